@@ -1,0 +1,9 @@
+# Everything comes from the system's packages; nothing is fetched.
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenEXR 3 CONFIG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(fmt REQUIRED)
+find_package(RapidJSON REQUIRED)
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)

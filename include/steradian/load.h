@@ -1,0 +1,53 @@
+// From files to a Scene, and from pictures to files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "steradian/image.h"
+#include "steradian/result.h"
+#include "steradian/scene.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+struct LoadOptions {
+    uint64_t max_file_bytes = uint64_t(4) << 30;  ///< of one file
+    ImageLimits images;
+    uint32_t max_depth = 256;  ///< of nested JSON
+    /// Assets may be named by absolute paths or leave the scene's folder through "..".
+    bool allow_outside_paths = true;
+};
+
+/// What a file says: the scene, and the settings that it asks for (defaults where it is silent).
+struct LoadedScene {
+    Scene scene;
+    RenderSettings settings;
+    Diagnostics diagnostics;
+};
+
+/// By extension: .json (Steradian's own format and the course vocabulary), .obj, .ply. A bare model gets a camera that
+/// frames it and a neutral studio light.
+Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& options = {});
+
+/// A JSON scene from memory; relative paths resolve against `base_folder`. `name` stands for the file in messages.
+Result<LoadedScene> load_scene_json(std::string_view text, const std::string& name, const std::string& base_folder,
+                                    const LoadOptions& options = {});
+
+enum class ExrPrecision : uint8_t { half, single };
+
+struct ImageWriteOptions {
+    ExrPrecision exr = ExrPrecision::single;
+    float exposure = 0;          ///< stops; for PNG only
+    std::string view = "srgb";   ///< view transform for PNG, see view_names()
+};
+
+/// By extension: .exr, .hdr, .pfm, .png. The file appears whole or not at all; an existing one is replaced.
+Status write_image(const std::string& path, const Image& image, const ImageWriteOptions& options = {},
+                   Diagnostics* diagnostics = nullptr);
+
+/// By extension (.exr, .hdr, .pfm, .png, .jpg), confirmed by content. PNG and JPEG are linearised from sRGB.
+Result<Image> read_image(const std::string& path, const ImageLimits& limits = {});
+
+}  // namespace steradian

@@ -1,0 +1,81 @@
+// From a Scene to a picture.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "steradian/image.h"
+#include "steradian/result.h"
+#include "steradian/scene.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+/// A scene made ready to render: checked, its light tables and bounding volume hierarchies built. Immutable, so many
+/// jobs may use it at once.
+class RenderScene;
+
+/// Takes the scene over (its arrays are moved, not copied). Fails with bad_input when an id refers to nothing or a
+/// value makes no sense, with resources when there is not enough memory. Geometry that cannot be rendered (vertices
+/// that are not finite or beyond 1e15) is dropped with one counted warning in `diagnostics`.
+Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics);
+
+/// XXH3-128 of the scene's content as 32 hexadecimal digits. Names do not count.
+std::string scene_hash(const Scene& scene);
+
+struct RenderProgress {
+    uint64_t samples_done = 0;   ///< camera samples finished, over all pixels
+    uint64_t samples_total = 0;
+    uint64_t rays = 0;           ///< traced so far, shadow rays included
+    double seconds = 0;          ///< since the job started
+};
+
+/// A camera sample that was not a finite, non-negative radiance. It counted as 0.
+struct BadSample {
+    uint32_t x = 0, y = 0;
+    uint64_t sample = 0;
+    Rgb value;
+};
+
+struct RenderStatistics {
+    uint64_t samples = 0;
+    uint64_t camera_rays = 0, specular_rays = 0, shadow_rays = 0;
+    uint64_t bad_samples = 0;
+    std::optional<BadSample> first_bad_sample;  ///< first in (block, tile, pixel, sample) order of the film's sums
+    uint32_t threads = 0;        ///< how many really took part
+    double seconds = 0;
+};
+
+struct RenderResult {
+    Image image;  ///< R, G, B of the crop window (or the whole picture), with metadata
+    bool complete = true;  ///< false after a cancel: `image` holds what was done, each pixel over its own sample count
+    uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
+    RenderStatistics statistics;
+};
+
+/// A render in progress on its own threads. Destroying it cancels and waits.
+class RenderJob {
+public:
+    static Result<std::unique_ptr<RenderJob>> start(std::shared_ptr<const RenderScene> scene,
+                                                    const RenderSettings& settings, const Execution& execution);
+    virtual ~RenderJob() = default;
+
+    /// Asks the job to stop soon. Safe from any thread, and from a signal handler.
+    virtual void cancel() noexcept = 0;
+    virtual bool finished() const noexcept = 0;
+    /// Blocks until the job ends, at most `seconds`; true when it has ended.
+    virtual bool wait_for(double seconds) = 0;
+    virtual RenderProgress progress() const = 0;
+    /// The picture as it is now, from whole sample blocks of each tile; pixels without samples are 0.
+    virtual Image snapshot() const = 0;
+    /// Blocks until the end and hands the result over, once.
+    virtual Result<RenderResult> take() = 0;
+};
+
+/// prepare, start, wait.
+Result<RenderResult> render(Scene scene, const RenderSettings& settings, const Execution& execution = {});
+
+}  // namespace steradian

@@ -1,0 +1,205 @@
+// A scene as plain data: arrays and ids, no pointers, closed sets of kinds as variants.
+// A Scene can be built by hand, hashed, printed and sent. Lengths are metres, angles degrees, colours linear Rec. 709.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "steradian/image.h"
+#include "steradian/vec.h"
+
+namespace steradian {
+
+enum class ImageId : uint32_t {};
+enum class TextureId : uint32_t {};
+enum class MaterialId : uint32_t {};
+enum class MeshId : uint32_t {};
+enum class ShapeId : uint32_t {};
+enum class InstanceId : uint32_t {};
+
+template <class Id>
+    requires std::is_enum_v<Id>
+constexpr uint32_t index(Id id) {
+    return static_cast<uint32_t>(id);
+}
+
+// --- Textures --------------------------------------------------------------------------------------------------
+
+struct ConstantTexture {
+    Rgb value{0.5f, 0.5f, 0.5f};
+};
+
+enum class Wrap : uint8_t { repeat, clamp, mirror, black };
+enum class ColorSpace : uint8_t { linear, srgb };  ///< how texel values are to be read
+
+/// Bilinear lookup at (u, v) * scale + offset; v runs downwards from the top row, as in glTF.
+struct ImageTexture {
+    ImageId image{};
+    ColorSpace color_space = ColorSpace::srgb;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+    bool bilinear = true;  ///< false: nearest texel
+    Vec2 scale{1, 1};
+    Vec2 offset{0, 0};
+};
+
+/// Squares of side 1 in (u, v) * scale + offset; `even` where floor(u) + floor(v) is even.
+struct CheckerTexture {
+    Rgb even{0.8f, 0.8f, 0.8f};
+    Rgb odd{0.2f, 0.2f, 0.2f};
+    Vec2 scale{1, 1};
+    Vec2 offset{0, 0};
+};
+
+using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture>;
+
+// --- Materials -------------------------------------------------------------------------------------------------
+
+/// Lambert, f = reflectance / π. One-sided with respect to the shading normal unless two_sided.
+struct DiffuseMaterial {
+    TextureId reflectance{};
+    bool two_sided = false;
+};
+
+/// Perfect refraction that passes radiance on unchanged; total internal reflection reflects. It never blends.
+struct RefractionMaterial {
+    float eta = 1.5f;  ///< index inside over outside, > 0
+};
+
+/// Smooth dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface.
+struct GlassMaterial {
+    float eta = 1.5f;              ///< index inside over outside, > 0
+    Rgb reflectance{1, 1, 1};      ///< tint of the reflected part
+    Rgb transmittance{1, 1, 1};    ///< tint of the transmitted part
+};
+
+/// Perfect mirror, both sides.
+struct MirrorMaterial {
+    Rgb reflectance{1, 1, 1};
+};
+
+using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial>;
+
+// --- Shapes ----------------------------------------------------------------------------------------------------
+
+/// Indexed triangles. Counter-clockwise seen from outside: the geometric normal is (p1 - p0) × (p2 - p0).
+struct Mesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;      ///< empty (flat) or one per position; need not be unit length
+    std::vector<Vec2> uvs;          ///< empty or one per position
+    std::vector<uint32_t> indices;  ///< three per triangle, each < positions.size()
+};
+
+/// Normals point outwards. u runs with the angle about +Y from +X towards -Z, v from the north pole down.
+struct Sphere {
+    Vec3 center;
+    float radius = 1;
+};
+
+/// The parallelogram center + a * half_u + b * half_v, a and b in [-1, 1]; normal along half_u × half_v.
+/// uv = ((a + 1) / 2, (1 - b) / 2).
+struct Rectangle {
+    Vec3 center;
+    Vec3 half_u{1, 0, 0};
+    Vec3 half_v{0, 1, 0};
+};
+
+struct Disk {
+    Vec3 center;
+    Vec3 normal{0, 0, 1};  ///< need not be unit length
+    float radius = 1;
+};
+
+using Shape = std::variant<MeshId, Sphere, Rectangle, Disk>;
+
+/// A shape placed in the world with a material. Several instances may share one shape.
+struct Instance {
+    ShapeId shape{};
+    MaterialId material{};
+    Affine world_from_object;
+};
+
+// --- Lights ----------------------------------------------------------------------------------------------------
+
+struct PointLight {
+    Vec3 position;
+    Rgb intensity{1, 1, 1};  ///< W/sr; a flux Φ is Φ / 4π
+};
+
+/// Smoothstep falloff in the cosine between the two cone angles, zero outside the outer one.
+struct SpotLight {
+    Vec3 position;
+    Vec3 direction{0, -1, 0};  ///< where it points
+    Rgb intensity{1, 1, 1};    ///< W/sr inside the inner cone
+    float inner_angle = 30;    ///< half angle, degrees, [0, outer_angle]
+    float outer_angle = 45;    ///< half angle, degrees, (0, 180]
+};
+
+struct DirectionalLight {
+    Vec3 direction{0, -1, 0};  ///< where the light travels to
+    Rgb irradiance{1, 1, 1};   ///< W/m² on a surface that faces it
+};
+
+/// Every point of the instance's surface emits `radiance`, on the side of the geometric normal unless two_sided.
+struct AreaLight {
+    InstanceId instance{};
+    Rgb radiance{1, 1, 1};
+    bool two_sided = false;
+    uint32_t samples = 1;  ///< shadow rays per camera sample
+};
+
+/// Radiance from infinitely far: constant, or a latitude-longitude image times `radiance`.
+/// The image's top row is +Y, its centre column -Z, a quarter to the right of that +X; `rotation` turns it about +Y,
+/// counter-clockwise seen from above.
+struct EnvironmentLight {
+    Rgb radiance{1, 1, 1};
+    std::optional<ImageId> image;
+    ColorSpace color_space = ColorSpace::linear;
+    float rotation = 0;    ///< degrees
+    uint32_t samples = 1;  ///< shadow rays per camera sample
+};
+
+/// At most one EnvironmentLight per scene.
+using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight, EnvironmentLight>;
+
+// --- Cameras ---------------------------------------------------------------------------------------------------
+
+/// Pinhole. The picture's up is `up` made perpendicular to the view.
+struct PerspectiveCamera {
+    Vec3 position{0, 0, 0};
+    Vec3 look_at{0, 0, -1};
+    Vec3 up{0, 1, 0};
+    float vertical_fov = 40;  ///< degrees, in (0, 180)
+};
+
+using Camera = std::variant<PerspectiveCamera>;
+
+// --- The scene -------------------------------------------------------------------------------------------------
+
+struct Scene {
+    std::vector<RawImage> images;
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Shape> shapes;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;
+
+    /// For messages and for choosing a camera by name; parallel to the arrays above, or empty.
+    struct Names {
+        std::vector<std::string> images, textures, materials, meshes, shapes, instances, lights, cameras;
+    } names;
+};
+
+/// Appends and returns the new element's id.
+template <class Id, class T>
+Id add(std::vector<T>& pool, T value) {
+    pool.push_back(std::move(value));
+    return Id(static_cast<uint32_t>(pool.size() - 1));
+}
+
+}  // namespace steradian

@@ -1,0 +1,56 @@
+// How a picture is to be made, as plain data. Together with the scene and the seed it determines every bit of it,
+// except for the fields of Execution, which never change a pixel.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace steradian {
+
+enum class IntegratorKind : uint8_t { direct };
+enum class SamplerKind : uint8_t { sobol, independent };
+enum class FilterKind : uint8_t { box, tent, gaussian, mitchell };
+
+/// Radius in pixels. The Gaussian has a standard deviation of a third of its radius and is shifted down to reach 0
+/// at the radius; Mitchell has B = C = 1/3.
+struct Filter {
+    FilterKind kind = FilterKind::gaussian;
+    float radius = 1.5f;
+    bool operator==(const Filter&) const = default;
+};
+
+/// Pixels [x0, x1) × [y0, y1) of the full picture, from its top left corner.
+struct Crop {
+    uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool operator==(const Crop&) const = default;
+};
+
+struct RenderSettings {
+    uint32_t width = 512;
+    uint32_t height = 512;
+    std::optional<Crop> crop;
+    IntegratorKind integrator = IntegratorKind::direct;
+    uint32_t max_depth = 16;          ///< bounces, specular ones too: 0 emission, 1 direct light
+    uint64_t samples_per_pixel = 64;  ///< 1 … kMaxSamplesPerPixel
+    SamplerKind sampler = SamplerKind::sobol;
+    uint64_t seed = 0;
+    Filter filter;
+    uint32_t camera = 0;              ///< index into Scene::cameras
+};
+
+inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
+inline constexpr uint32_t kMaxResolution = 1u << 20;          ///< of one side
+inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;     ///< width × height
+
+enum class BvhBuilder : uint8_t { sah, median };
+
+/// What may differ from run to run without changing the picture.
+struct Execution {
+    uint32_t threads = 0;    ///< 0: as many as the machine has
+    uint32_t tile_size = 16; ///< pixels, 1 … 256
+    BvhBuilder bvh = BvhBuilder::sah;
+    uint32_t bvh_max_depth = 64;
+};
+
+}  // namespace steradian

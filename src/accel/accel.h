@@ -1,0 +1,98 @@
+// The bounding volume hierarchy: geometry in, hits out. It knows nothing of scenes, materials or lights.
+//
+// The closest hit is defined by arithmetic and not by traversal, so it is the same for every builder, kernel and batch:
+// the accepted candidate with the smallest (t, instance, prim), compared in that order. See docs/architecture.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "math/ray.h"
+#include "math/vector.h"
+#include "steradian/result.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+
+struct SphereGeometry {
+    Vec3 center;
+    float radius = 1;
+};
+struct RectangleGeometry {
+    Vec3 center, half_u, half_v;
+};
+/// The ellipse center + a * axis_u + b * axis_v with a² + b² <= 1.
+struct DiskGeometry {
+    Vec3 center, axis_u, axis_v;
+};
+/// Three indices a triangle.
+struct TriangleGeometry {
+    std::span<const Vec3> positions;
+    std::span<const uint32_t> indices;
+};
+
+/// One kind of primitive per geometry. The spans must outlive the Accel; `prim` of a hit is the index within the span.
+using Geometry = std::variant<TriangleGeometry, std::span<const SphereGeometry>, std::span<const RectangleGeometry>,
+                              std::span<const DiskGeometry>>;
+
+/// A geometry placed in the world. `instance` of a hit is the index within the span given to build.
+/// With an identity transform rays are used as they are; otherwise the ray is transformed into the geometry's space in
+/// double and rounded to float once, and t means the same in both spaces.
+struct GeometryInstance {
+    uint32_t geometry = 0;
+    Affine world_from_object;
+};
+
+struct AccelOptions {
+    BvhBuilder builder = BvhBuilder::sah;
+    uint32_t max_depth = 64;                 ///< 1 … 64 levels below a root; a leaf there takes whatever is left
+    std::function<bool()> cancelled;         ///< asked now and then during the build
+};
+
+struct AccelStatistics {
+    uint64_t primitives = 0, nodes = 0, leaves = 0;
+    uint32_t depth = 0;   ///< deepest leaf of any geometry
+    uint64_t bytes = 0;   ///< everything the Accel holds; the caller's arrays are not counted
+    double build_seconds = 0;
+};
+
+class Accel {
+public:
+    /// Primitives with coordinates that are not finite or beyond kMaxCoordinate are refused (bad_input); zero-area ones
+    /// are fine and are never hit. A singular transform is refused. `resources` when memory runs out,
+    /// `render_failed` when cancelled.
+    static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                               const AccelOptions& options = {});
+    Accel(Accel&&) noexcept;
+    Accel& operator=(Accel&&) noexcept;
+    ~Accel();
+
+    /// hits.size() == rays.size(). A ray that hits nothing gets Hit{}.
+    void intersect(std::span<const Ray> rays, std::span<Hit> hits) const noexcept;
+    /// 1 where any primitive lies within [tmin, tmax], else 0.
+    void occluded(std::span<const Ray> rays, std::span<uint8_t> result) const noexcept;
+    /// The hit that follows `after[i]` in the order (t, instance, prim) along the same ray; for cut-outs.
+    void next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept;
+
+    Hit intersect(const Ray& ray) const noexcept;
+    bool occluded(const Ray& ray) const noexcept;
+
+    /// World bounds of everything; lo > hi when there is nothing.
+    struct Bounds {
+        Vec3 lo{kInfinity, kInfinity, kInfinity}, hi{-kInfinity, -kInfinity, -kInfinity};
+    };
+    Bounds bounds() const noexcept;
+    const AccelStatistics& statistics() const noexcept;
+
+private:
+    struct Data;
+    explicit Accel(std::unique_ptr<const Data> data);
+    std::unique_ptr<const Data> data_;
+};
+
+}  // namespace steradian

@@ -1,0 +1,142 @@
+#include "base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace steradian {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// Length of the valid UTF-8 sequence at the start of `s`, 0 when it is not valid.
+size_t utf8_length(std::string_view s) {
+    const auto byte = [&](size_t i) { return static_cast<unsigned char>(s[i]); };
+    const unsigned char first = byte(0);
+    const size_t n = first < 0x80 ? 1 : first >= 0xc2 && first < 0xe0 ? 2 : (first & 0xf0) == 0xe0 ? 3
+                   : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+    if (n == 0 || n > s.size()) return 0;
+    for (size_t i = 1; i < n; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    if (first == 0xe0 && byte(1) < 0xa0) return 0;   // overlong
+    if (first == 0xed && byte(1) >= 0xa0) return 0;  // surrogate
+    if (first == 0xf0 && byte(1) < 0x90) return 0;   // overlong
+    if (first == 0xf4 && byte(1) >= 0x90) return 0;  // beyond U+10FFFF
+    if (first == 0xc2 && byte(1) < 0xa0) return 0;   // C1 controls: terminals act on some of them
+    return n;
+}
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (size_t i = 1; i <= a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); ++j) {
+            const size_t substitute = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+        }
+    }
+    return row[b.size()];
+}
+
+}  // namespace
+
+std::string escape_for_display(std::string_view text, size_t max_bytes) {
+    static constexpr char kHex[] = "0123456789abcdef";
+    std::string out;
+    for (size_t i = 0; i < text.size();) {
+        if (out.size() >= max_bytes) return out + "…";
+        const auto c = static_cast<unsigned char>(text[i]);
+        const size_t n = utf8_length(text.substr(i));
+        if (n == 0 || c < 0x20 || c == 0x7f) {
+            out += {'\\', 'x', kHex[c >> 4], kHex[c & 15]};
+            ++i;
+        } else {
+            out += text.substr(i, n);
+            i += n;
+        }
+    }
+    return out;
+}
+
+std::optional<std::string> closest_match(std::string_view word, std::span<const std::string_view> candidates) {
+    if (word.empty() || word.size() > 64) return std::nullopt;
+    std::string_view best;
+    size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
+    for (const std::string_view candidate : candidates) {
+        const size_t distance = edit_distance(word, candidate);
+        if (distance < best_distance) best_distance = distance, best = candidate;
+    }
+    if (best.empty()) return std::nullopt;
+    return std::string(best);
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
+    if (const auto match = closest_match(word, candidates)) return "did you mean '" + *match + "'?";
+    if (candidates.empty()) return {};
+    std::string out = candidates.size() == 1 ? "expected " : "expected one of ";
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        if (i) out += ", ";
+        out += candidates[i];
+    }
+    return out;
+}
+
+TextPosition locate(std::string_view text, size_t offset) {
+    constexpr size_t kWidth = 160;
+    offset = std::min(offset, text.size());
+    size_t begin = 0;
+    TextPosition at;
+    for (size_t i = 0; i < offset; ++i) {
+        const bool lone_cr = text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n');
+        if (text[i] == '\n' || lone_cr) ++at.line, begin = i + 1;
+    }
+    at.column = static_cast<uint32_t>(std::min<size_t>(offset - begin + 1, std::numeric_limits<uint32_t>::max()));
+    size_t end = text.find_first_of("\r\n", offset);
+    end = std::min(end, text.size());
+    if (offset > begin + kWidth / 2) begin = offset - kWidth / 2;
+    at.excerpt = std::string(text.substr(begin, std::min(end - begin, kWidth)));
+    return at;
+}
+
+std::optional<double> parse_double(std::string_view text) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    if (text.empty() || text.front() == '+') return std::nullopt;
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end != text.data() + text.size()) return std::nullopt;
+    if (error == std::errc::result_out_of_range) {
+        // from_chars does not say which side: decide by the position of the first significant digit and the exponent.
+        const bool negative = text.front() == '-';
+        const size_t e = text.find_first_of("eE");
+        const std::string_view mantissa = text.substr(negative, (e == text.npos ? text.size() : e) - negative);
+        const size_t point = std::min(mantissa.find('.'), mantissa.size());
+        const size_t digit = mantissa.find_first_of("123456789");
+        bool tiny = digit == mantissa.npos || digit > point;
+        if (e != text.npos && e + 1 < text.size()) tiny = text[e + 1] == '-';
+        value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+        return negative ? -value : value;
+    }
+    if (error != std::errc()) return std::nullopt;
+    return value;
+}
+
+bool iequals(std::string_view a, std::string_view b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::string extension_of(std::string_view path) {
+    const size_t slash = path.find_last_of('/');
+    const std::string_view name = slash == path.npos ? path : path.substr(slash + 1);
+    const size_t dot = name.find_last_of('.');
+    if (dot == name.npos || dot == 0) return {};
+    std::string extension(name.substr(dot));
+    std::transform(extension.begin(), extension.end(), extension.begin(), lower);
+    return extension;
+}
+
+}  // namespace steradian

@@ -1,0 +1,36 @@
+// Small text helpers shared by messages and parsers.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace steradian {
+
+/// Control characters, DEL and invalid UTF-8 as \xNN, so that foreign bytes never reach a terminal raw.
+/// Longer than max_bytes: cut, with "…".
+std::string escape_for_display(std::string_view text, size_t max_bytes = 200);
+
+/// The candidate within a small edit distance of `word`, ignoring case; nothing when none is close.
+std::optional<std::string> closest_match(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "did you mean 'x'?", or "one of a, b, c" when nothing is close.
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
+
+/// Line and column (1-based) of a byte offset, and that line's text (cut to a readable width around the column).
+struct TextPosition {
+    uint32_t line = 1, column = 1;
+    std::string excerpt;
+};
+TextPosition locate(std::string_view text, size_t offset);
+
+/// Whole-string number parse by std::from_chars, independent of locale; a leading '+' is accepted.
+/// Out-of-range values give infinity or zero with the right sign, as strtod would.
+std::optional<double> parse_double(std::string_view text);
+
+bool iequals(std::string_view a, std::string_view b);
+/// Lower-case extension with its dot, of the last path component: ".exr"; empty when there is none.
+std::string extension_of(std::string_view path);
+
+}  // namespace steradian

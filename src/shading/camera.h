@@ -1,0 +1,27 @@
+// Camera rays.
+#pragma once
+
+#include "math/ray.h"
+#include "math/vector.h"
+#include "steradian/result.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+
+/// A camera with everything that is the same for all rays worked out.
+class CameraSampler {
+public:
+    /// bad_input for degenerate cameras: position equal to look_at, up parallel to the view or zero, a field of view
+    /// outside (0, 180), values that are not finite.
+    static Result<CameraSampler> make(const Camera& camera, uint32_t width, uint32_t height);
+
+    /// Through a film position in pixels from the top left corner of the full picture; `lens` is for cameras that have
+    /// one. The direction has unit length.
+    Ray generate(Vec2 film, Vec2 lens) const noexcept;
+
+private:
+    Vec3 origin_;
+    Vec3d corner_, dx_, dy_;  ///< direction through film (0, 0), and its change per pixel
+};
+
+}  // namespace steradian

@@ -1,0 +1,34 @@
+// Filter importance sampling (Ernst, Stamminger & Greiner 2006): a sample belongs to one pixel and its position within
+// the pixel's filter support is drawn with density |f| / ∫|f|; what is left of the filter is a sign and a constant.
+#pragma once
+
+#include <memory>
+
+#include "math/vector.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+struct FilterSample {
+    Vec2 offset;   ///< from the pixel's centre, pixels, each in [-radius, radius]
+    float weight;  ///< sign(f) · ∫|f| / ∫f
+};
+
+/// Separable. Tables are built in the constructor from src/math functions only.
+class FilterSampler {
+public:
+    explicit FilterSampler(const Filter& filter);
+    FilterSample sample(Vec2 u) const noexcept;
+    /// f(x, y) normalised to ∫f = 1; for tests and documentation.
+    float evaluate(Vec2 offset) const noexcept;
+
+private:
+    struct Table;
+    Filter filter_;
+    std::shared_ptr<const Table> table_;  ///< null for the filters with a closed inverse
+};
+
+/// The radius a filter has when nothing is said: box 0.5, tent 1, Gaussian 1.5, Mitchell 2.
+float default_radius(FilterKind kind) noexcept;
+
+}  // namespace steradian

@@ -1,0 +1,39 @@
+// What lights send, and how to choose directions towards them.
+#pragma once
+
+#include <optional>
+
+#include "math/ray.h"
+#include "math/vector.h"
+#include "shading/surface.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+
+struct LightSample {
+    Vec3 wi;              ///< unit, from the point towards the light
+    Rgb radiance;         ///< incident radiance; for delta lights the irradiance on a surface that faces them
+    float pdf = 0;        ///< per solid angle; 0 marks a delta light, whose "pdf" is 1
+    Ray shadow_ray;       ///< unobstructed when occluded() says no
+};
+
+/// Number of shadow rays that light `light` wants per camera sample.
+uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
+
+/// One direction towards one light of scene.lights. `choice`: 32 uniform bits for choosing among its parts, used where
+/// it has several. Nothing when no light can arrive from it. The density may depend on the point: a constant
+/// environment is sampled by the cosine about the shading normal, a rectangle by its solid angle, a sphere by its cone.
+std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
+                                        uint32_t choice, Vec2 u) noexcept;
+
+/// The density with which sample_light chooses wi, given that a ray from `from` along wi sees the light at `hit` (for
+/// the environment `hit` is null). 0 for delta lights.
+float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi, const SurfacePoint* hit) noexcept;
+
+/// Radiance that an area light on this surface sends towards wo; black where there is none.
+Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept;
+
+/// Radiance that arrives from infinity along a ray of direction d (unit); black without an environment.
+Rgb environment_radiance(const ShadingScene& scene, Vec3 d) noexcept;
+
+}  // namespace steradian

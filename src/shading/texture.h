@@ -1,0 +1,16 @@
+// Reading textures: sRGB decoding, wrapping and filtering are ours, in fixed arithmetic, because texels reach pixels.
+#pragma once
+
+#include "math/vector.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+
+/// Texel (x, y) of an image as linear values; grey is replicated, alpha ignored. Coordinates must be inside.
+/// Values of float images that are not finite read as 0 (prepare counts them).
+Rgb texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) noexcept;
+
+/// v runs downwards from the top row.
+Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
+
+}  // namespace steradian
