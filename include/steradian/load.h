@@ -1,4 +1,4 @@
-// From files to a Scene, and from pictures to files.
+// From files to a Scene.
 #pragma once
 
 #include <cstdint>
@@ -34,20 +34,5 @@ Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& optio
 /// A JSON scene from memory; relative paths resolve against `base_folder`. `name` stands for the file in messages.
 Result<LoadedScene> load_scene_json(std::string_view text, const std::string& name, const std::string& base_folder,
                                     const LoadOptions& options = {});
-
-enum class ExrPrecision : uint8_t { half, single };
-
-struct ImageWriteOptions {
-    ExrPrecision exr = ExrPrecision::single;
-    float exposure = 0;          ///< stops; for PNG only
-    std::string view = "srgb";   ///< view transform for PNG, see view_names()
-};
-
-/// By extension: .exr, .hdr, .pfm, .png. The file appears whole or not at all; an existing one is replaced.
-Status write_image(const std::string& path, const Image& image, const ImageWriteOptions& options = {},
-                   Diagnostics* diagnostics = nullptr);
-
-/// By extension (.exr, .hdr, .pfm, .png, .jpg), confirmed by content. PNG and JPEG are linearised from sRGB.
-Result<Image> read_image(const std::string& path, const ImageLimits& limits = {});
 
 }  // namespace steradian

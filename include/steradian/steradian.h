@@ -2,6 +2,7 @@
 #pragma once
 
 #include "steradian/image.h"     // IWYU pragma: export
+#include "steradian/image_io.h"  // IWYU pragma: export
 #include "steradian/load.h"      // IWYU pragma: export
 #include "steradian/render.h"    // IWYU pragma: export
 #include "steradian/result.h"    // IWYU pragma: export
