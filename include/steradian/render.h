@@ -23,9 +23,6 @@ class RenderScene;
 /// that are not finite or beyond 1e15) is dropped with one counted warning in `diagnostics`.
 Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics);
 
-/// XXH3-128 of the scene's content as 32 hexadecimal digits. Names do not count.
-std::string scene_hash(const Scene& scene);
-
 struct RenderProgress {
     uint64_t samples_done = 0;   ///< camera samples finished, over all pixels
     uint64_t samples_total = 0;
@@ -44,7 +41,7 @@ struct RenderStatistics {
     uint64_t samples = 0;
     uint64_t camera_rays = 0, specular_rays = 0, shadow_rays = 0;
     uint64_t bad_samples = 0;
-    std::optional<BadSample> first_bad_sample;  ///< first in (block, tile, pixel, sample) order of the film's sums
+    std::optional<BadSample> first_bad_sample;  ///< the one with the smallest (sample, y, x)
     uint32_t threads = 0;        ///< how many really took part
     double seconds = 0;
 };

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -194,6 +196,9 @@ struct Scene {
         std::vector<std::string> images, textures, materials, meshes, shapes, instances, lights, cameras;
     } names;
 };
+
+/// XXH3-128 of the scene's content as 32 hexadecimal digits. Names do not count.
+std::string scene_hash(const Scene& scene);
 
 /// Appends and returns the new element's id.
 template <class Id, class T>

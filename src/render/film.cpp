@@ -1,0 +1,73 @@
+#include "render/film.h"
+
+#include <algorithm>
+
+namespace steradian {
+namespace {
+
+/// Tiles lie on a grid in absolute coordinates, so a crop cuts them but does not shift them.
+std::vector<TileRect> cut(Crop window, uint32_t size) {
+    std::vector<TileRect> out;
+    for (uint32_t ty = window.y0 / size; ty * size < window.y1; ++ty)
+        for (uint32_t tx = window.x0 / size; tx * size < window.x1; ++tx)
+            out.push_back({std::max(tx * size, window.x0), std::max(ty * size, window.y0),
+                           std::min((tx + 1) * size, window.x1), std::min((ty + 1) * size, window.y1)});
+    return out;
+}
+
+}  // namespace
+
+Film::Film(Crop window, uint32_t tile_size) : window_(window) {
+    const std::vector<TileRect> rects = cut(window, tile_size);
+    tiles_ = std::vector<Tile>(rects.size());
+    for (size_t i = 0; i < rects.size(); ++i) {
+        tiles_[i].rect = rects[i];
+        tiles_[i].sums.resize(rects[i].pixels());
+    }
+}
+
+void Film::commit(size_t tile_index, uint64_t block, uint32_t samples, std::vector<RgbSum> sums) {
+    Tile& tile = tiles_[tile_index];
+    const std::lock_guard lock(tile.mutex);
+    tile.held_back.emplace(block, Block{samples, std::move(sums)});
+    for (auto next = tile.held_back.begin(); next != tile.held_back.end() && next->first == tile.next_block;
+         next = tile.held_back.erase(next)) {
+        for (size_t i = 0; i < tile.sums.size(); ++i) tile.sums[i] += next->second.sums[i];
+        tile.samples += next->second.samples;
+        ++tile.next_block;
+    }
+}
+
+Image Film::develop() const {
+    Image image;
+    image.width = window_.x1 - window_.x0;
+    image.height = window_.y1 - window_.y0;
+    image.channels = {"R", "G", "B"};
+    image.pixels.resize(size_t(image.width) * image.height * 3);
+    for (const Tile& tile : tiles_) {
+        const std::lock_guard lock(tile.mutex);
+        if (tile.samples == 0) continue;
+        const auto count = static_cast<double>(tile.samples);
+        for (uint32_t i = 0; i < tile.rect.pixels(); ++i) {
+            const size_t x = tile.rect.x0 - window_.x0 + i % tile.rect.width();
+            const size_t y = tile.rect.y0 - window_.y0 + i / tile.rect.width();
+            float* pixel = &image.pixels[(y * image.width + x) * 3];
+            pixel[0] = static_cast<float>(tile.sums[i].r / count);
+            pixel[1] = static_cast<float>(tile.sums[i].g / count);
+            pixel[2] = static_cast<float>(tile.sums[i].b / count);
+        }
+    }
+    return image;
+}
+
+Film::Range Film::samples_per_pixel() const {
+    Range range{~uint64_t(0), 0};
+    for (const Tile& tile : tiles_) {
+        const std::lock_guard lock(tile.mutex);
+        range.min = std::min(range.min, tile.samples);
+        range.max = std::max(range.max, tile.samples);
+    }
+    return tiles_.empty() ? Range{} : range;
+}
+
+}  // namespace steradian

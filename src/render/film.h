@@ -1,0 +1,73 @@
+// The sums. Block b of a pixel is samples [64 b, 64 b + 64), whatever the total; within a block samples are added in
+// order, blocks are folded in ascending order, both in double. A block that is finished early is held back. So the
+// result does not depend on who computed which block when, and stays exact enough for 10⁹ samples a pixel.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "math/vector.h"
+#include "steradian/image.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+inline constexpr uint32_t kBlockSamples = 64;
+
+/// Pixels [x0, x1) × [y0, y1) in absolute coordinates.
+struct TileRect {
+    uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    uint32_t width() const { return x1 - x0; }
+    uint32_t pixels() const { return (x1 - x0) * (y1 - y0); }
+};
+
+struct RgbSum {
+    double r = 0, g = 0, b = 0;
+    void add(Rgb value, float weight) {
+        r += double(value.r) * double(weight);
+        g += double(value.g) * double(weight);
+        b += double(value.b) * double(weight);
+    }
+    RgbSum& operator+=(const RgbSum& other) {
+        r += other.r, g += other.g, b += other.b;
+        return *this;
+    }
+};
+
+class Film {
+public:
+    Film(Crop window, uint32_t tile_size);
+
+    size_t tiles() const noexcept { return tiles_.size(); }
+    const TileRect& rect(size_t tile) const noexcept { return tiles_[tile].rect; }
+
+    /// Hands over the sums of one block of one tile, a sum per pixel row by row; from any thread, each block once.
+    void commit(size_t tile, uint64_t block, uint32_t samples, std::vector<RgbSum> sums);
+
+    /// R, G, B means over the samples that were folded; 0 where there are none. Safe while others commit.
+    Image develop() const;
+    struct Range {
+        uint64_t min = 0, max = 0;
+    };
+    Range samples_per_pixel() const;
+
+private:
+    struct Block {
+        uint32_t samples = 0;
+        std::vector<RgbSum> sums;
+    };
+    struct Tile {
+        TileRect rect;
+        mutable std::mutex mutex;
+        uint64_t next_block = 0;
+        uint64_t samples = 0;
+        std::vector<RgbSum> sums;
+        std::map<uint64_t, Block> held_back;
+    };
+    Crop window_;
+    std::vector<Tile> tiles_;
+};
+
+}  // namespace steradian

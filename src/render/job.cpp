@@ -1,0 +1,251 @@
+// The one driver: checks the settings, hands (tile × block) units to the workers block by block over the whole frame,
+// and folds what they bring into the film.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "base/parallel.h"
+#include "render/film.h"
+#include "render/integrator.h"
+#include "render/metadata.h"
+
+namespace steradian {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Error settings_error(std::string message) { return {ErrorCode::usage, std::move(message), {}, {}, {}}; }
+
+Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
+    if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
+    if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
+        return Error{ErrorCode::resources, fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width,
+                                                       s.height, kMaxResolution, kMaxPixels), {}, {}, {}};
+    if (s.crop && (s.crop->x0 >= s.crop->x1 || s.crop->y0 >= s.crop->y1 || s.crop->x1 > s.width || s.crop->y1 > s.height))
+        return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels", s.crop->x0,
+                                          s.crop->y0, s.crop->x1, s.crop->y1, s.width, s.height));
+    if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
+        return settings_error(fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
+    if (!(s.filter.radius >= 0.01f && s.filter.radius <= 64))
+        return settings_error(fmt::format("a filter radius of {}: expected 0.01 to 64 pixels", s.filter.radius));
+    if (e.tile_size < 1 || e.tile_size > 256) return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
+    if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
+    if (s.camera >= cameras)
+        return settings_error(cameras == 0 ? "the scene has no camera" : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
+    return Ok{};
+}
+
+class Job final : public RenderJob {
+public:
+    Job(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings, const Execution& execution, CameraSampler camera)
+        : scene_(std::move(scene)), settings_(settings), execution_(execution),
+          window_(settings.crop.value_or(Crop{0, 0, settings.width, settings.height})), film_(window_, execution.tile_size),
+          context_{*scene_, settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed), cancelled_},
+          blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
+
+    ~Job() override {
+        cancel();
+        for (std::thread& worker : workers_) worker.join();
+    }
+
+    /// Own threads and not TBB's: the number of workers is then exactly what was asked for, in any host program.
+    void launch() {
+        const uint32_t wanted = execution_.threads ? execution_.threads : hardware_threads();
+        const uint64_t units = units_total();
+        const auto count = static_cast<uint32_t>(std::min<uint64_t>(wanted, std::max<uint64_t>(units, 1)));
+        // Integrators take their memory here, where running out of it can still be reported by start().
+        std::vector<std::unique_ptr<Integrator>> integrators;
+        for (uint32_t i = 0; i < count; ++i)
+            integrators.push_back(make_direct_integrator(context_, execution_.tile_size * execution_.tile_size));
+        running_ = count;
+        workers_.reserve(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            try {
+                workers_.emplace_back([this, integrator = std::move(integrators[i])] { work(*integrator); });
+            } catch (const std::system_error& e) {
+                fail({ErrorCode::resources, fmt::format("cannot start {} threads: {}", count, e.what()), {}, {}, {}});
+                retire(count - i);
+                break;
+            }
+        }
+    }
+
+    void cancel() noexcept override { cancelled_.store(true); }
+
+    bool finished() const noexcept override { return finished_.load(); }
+
+    bool wait_for(double seconds) override {
+        std::unique_lock lock(mutex_);
+        return done_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return running_ == 0; });
+    }
+
+    RenderProgress progress() const override {
+        RenderProgress p;
+        p.samples_done = samples_done_.load();
+        p.samples_total = pixels() * settings_.samples_per_pixel;
+        p.rays = rays_.load();
+        p.seconds = finished() ? seconds_.load() : std::chrono::duration<double>(Clock::now() - begin_).count();
+        return p;
+    }
+
+    Image snapshot() const override {
+        Image image = film_.develop();
+        describe(image, film_.samples_per_pixel());
+        return image;
+    }
+
+    Result<RenderResult> take() override {
+        {
+            std::unique_lock lock(mutex_);
+            done_.wait(lock, [&] { return running_ == 0; });
+            if (error_) return *error_;
+        }
+        try {
+            RenderResult result;
+            result.image = snapshot();
+            const Film::Range samples = film_.samples_per_pixel();
+            result.min_samples = samples.min;
+            result.max_samples = samples.max;
+            result.complete = samples.min == settings_.samples_per_pixel;
+            result.statistics = statistics();
+            return result;
+        } catch (const std::bad_alloc&) {
+            return Error{ErrorCode::resources, "not enough memory for the picture", {}, {}, {}};
+        }
+    }
+
+private:
+    uint64_t pixels() const { return uint64_t(window_.x1 - window_.x0) * (window_.y1 - window_.y0); }
+    uint64_t units_total() const { return blocks_ * film_.tiles(); }
+
+    void describe(Image& image, Film::Range samples) const {
+        image.metadata = picture_metadata(settings_, scene_->hash, samples.min, samples.max);
+    }
+
+    RenderStatistics statistics() const {
+        RenderStatistics s;
+        s.samples = samples_done_.load();
+        s.camera_rays = counters_.camera_rays;
+        s.specular_rays = counters_.specular_rays;
+        s.shadow_rays = counters_.shadow_rays;
+        s.bad_samples = counters_.bad_samples;
+        s.first_bad_sample = counters_.first_bad_sample;
+        s.threads = took_part_;
+        s.seconds = seconds_.load();
+        return s;
+    }
+
+    void work(Integrator& integrator) noexcept {
+        const FloatMode mode;
+        Counters counters;
+        bool took_part = false;
+        try {
+            for (uint64_t unit; !cancelled_ && (unit = next_unit_.fetch_add(1)) < units_total();) {
+                if (!render_unit(integrator, unit, counters)) break;
+                took_part = true;
+            }
+        } catch (const std::bad_alloc&) {
+            fail({ErrorCode::resources, "not enough memory to render", {}, {}, {}});
+        } catch (const std::exception& e) {
+            fail({ErrorCode::render_failed, fmt::format("the render failed: {}", e.what()), {}, {}, {}});
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            counters_.add(counters);
+            took_part_ += took_part;
+        }
+        retire(1);
+    }
+
+    /// Units are numbered block by block over the whole frame, so that there is a whole picture early.
+    bool render_unit(Integrator& integrator, uint64_t unit, Counters& counters) {
+        const size_t tile = unit % film_.tiles();
+        const uint64_t block = unit / film_.tiles();
+        WorkUnit work;
+        work.tile = film_.rect(tile);
+        work.first_sample = block * kBlockSamples;
+        work.samples = static_cast<uint32_t>(std::min<uint64_t>(kBlockSamples, settings_.samples_per_pixel - work.first_sample));
+        std::vector<RgbSum> sums(work.tile.pixels());
+        const uint64_t rays_before = counters.rays();
+        if (!integrator.render(work, sums, counters)) return false;
+        film_.commit(tile, block, work.samples, std::move(sums));
+        samples_done_ += uint64_t(work.samples) * work.tile.pixels();
+        rays_ += counters.rays() - rays_before;
+        return true;
+    }
+
+    void fail(Error error) {
+        const std::lock_guard lock(mutex_);
+        if (!error_) error_ = std::move(error);
+        cancelled_ = true;
+    }
+
+    void retire(uint32_t workers) {
+        const std::lock_guard lock(mutex_);
+        running_ -= workers;
+        if (running_ > 0) return;
+        seconds_ = std::chrono::duration<double>(Clock::now() - begin_).count();
+        finished_ = true;
+        done_.notify_all();
+    }
+
+    const std::shared_ptr<const RenderScene> scene_;
+    const RenderSettings settings_;
+    const Execution execution_;
+    const Crop window_;
+    std::atomic<bool> cancelled_{false};
+    Film film_;
+    const RenderContext context_;
+    const uint64_t blocks_;
+    const Clock::time_point begin_ = Clock::now();
+
+    std::atomic<uint64_t> next_unit_{0}, samples_done_{0}, rays_{0};
+    std::atomic<double> seconds_{0};
+    std::atomic<bool> finished_{false};
+
+    mutable std::mutex mutex_;  ///< guards what follows
+    std::condition_variable done_;
+    uint32_t running_ = 0;
+    uint32_t took_part_ = 0;
+    Counters counters_;
+    std::optional<Error> error_;
+
+    std::vector<std::thread> workers_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings,
+                                                    const Execution& execution) {
+    const auto& cameras = scene->shading.scene.cameras;
+    if (auto status = check(settings, execution, cameras.size()); !status) return std::move(status).error();
+    auto camera = CameraSampler::make(cameras[settings.camera], settings.width, settings.height);
+    if (!camera) return std::move(camera).error();
+    try {
+        auto job = std::make_unique<Job>(std::move(scene), settings, execution, *camera);
+        job->launch();
+        return std::unique_ptr<RenderJob>(std::move(job));
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::resources, fmt::format("not enough memory for a picture of {} × {} pixels", settings.width, settings.height), {}, {}, {}};
+    } catch (const std::exception& e) {
+        return Error{ErrorCode::render_failed, fmt::format("cannot start the render: {}", e.what()), {}, {}, {}};
+    }
+}
+
+Result<RenderResult> render(Scene scene, const RenderSettings& settings, const Execution& execution) {
+    Diagnostics diagnostics;
+    auto prepared = prepare(std::move(scene), execution, diagnostics);
+    if (!prepared) return std::move(prepared).error();
+    auto job = RenderJob::start(std::move(*prepared), settings, execution);
+    if (!job) return std::move(job).error();
+    return (*job)->take();
+}
+
+}  // namespace steradian

@@ -1,0 +1,53 @@
+#include "render/metadata.h"
+
+#include <fmt/format.h>
+
+#include "steradian/version.h"
+
+namespace steradian {
+
+std::map<std::string, std::string> picture_metadata(const RenderSettings& s, const std::string& scene_hash,
+                                                    uint64_t min_samples, uint64_t max_samples) {
+    std::map<std::string, std::string> m;
+    m["software"] = "Steradian " STERADIAN_VERSION;
+    m["steradian:scene"] = scene_hash;
+    m["steradian:size"] = fmt::format("{}x{}", s.width, s.height);
+    if (s.crop) m["steradian:crop"] = fmt::format("{},{},{},{}", s.crop->x0, s.crop->y0, s.crop->x1, s.crop->y1);
+    m["steradian:camera"] = fmt::format("{}", s.camera);
+    m["steradian:integrator"] = name_of(s.integrator);
+    m["steradian:max_depth"] = fmt::format("{}", s.max_depth);
+    m["steradian:sampler"] = name_of(s.sampler);
+    m["steradian:seed"] = fmt::format("{}", s.seed);
+    m["steradian:filter"] = fmt::format("{} {}", name_of(s.filter.kind), s.filter.radius);
+    m["steradian:samples"] = fmt::format("{}", min_samples);
+    if (min_samples != s.samples_per_pixel)
+        m["steradian:partial"] = fmt::format("{} to {} of {} samples", min_samples, max_samples, s.samples_per_pixel);
+    return m;
+}
+
+const char* name_of(IntegratorKind kind) noexcept {
+    switch (kind) {
+        case IntegratorKind::direct: return "direct";
+    }
+    return "";
+}
+
+const char* name_of(SamplerKind kind) noexcept {
+    switch (kind) {
+        case SamplerKind::sobol: return "sobol";
+        case SamplerKind::independent: return "independent";
+    }
+    return "";
+}
+
+const char* name_of(FilterKind kind) noexcept {
+    switch (kind) {
+        case FilterKind::box: return "box";
+        case FilterKind::tent: return "tent";
+        case FilterKind::gaussian: return "gaussian";
+        case FilterKind::mitchell: return "mitchell";
+    }
+    return "";
+}
+
+}  // namespace steradian

@@ -1,0 +1,94 @@
+// From a Scene to a RenderScene: clean, check, bake, derive the light tables, build the hierarchies.
+#include <fmt/format.h>
+
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "math/transform.h"
+#include "render/render_scene.h"
+#include "scene/validate.h"
+
+namespace steradian {
+namespace {
+
+/// The primitives of the analytic shapes, each array filled once so that spans into it stay valid.
+struct AnalyticShapes {
+    std::vector<SphereGeometry> spheres;
+    std::vector<RectangleGeometry> rectangles;
+    std::vector<DiskGeometry> disks;
+
+    explicit AnalyticShapes(const std::vector<Shape>& shapes) {
+        for (const Shape& shape : shapes) {
+            if (const auto* s = std::get_if<Sphere>(&shape)) spheres.push_back({s->center, s->radius});
+            if (const auto* r = std::get_if<Rectangle>(&shape)) rectangles.push_back({r->center, r->half_u, r->half_v});
+            if (const auto* d = std::get_if<Disk>(&shape)) disks.push_back(disk_geometry(*d));
+        }
+    }
+
+    static DiskGeometry disk_geometry(const Disk& d) {
+        const Frame frame = Frame::from_z(normalize(d.normal));
+        return {d.center, frame.x * d.radius, frame.y * d.radius};
+    }
+};
+
+std::vector<Geometry> geometries_of(const Scene& scene, const AnalyticShapes& analytic) {
+    std::vector<Geometry> out;
+    out.reserve(scene.shapes.size());
+    size_t sphere = 0, rectangle = 0, disk = 0;
+    for (const Shape& shape : scene.shapes) {
+        if (const auto* id = std::get_if<MeshId>(&shape)) {
+            const Mesh& mesh = scene.meshes[index(*id)];
+            out.push_back(TriangleGeometry{mesh.positions, mesh.indices});
+        } else if (std::holds_alternative<Sphere>(shape)) {
+            out.push_back(std::span(analytic.spheres).subspan(sphere++, 1));
+        } else if (std::holds_alternative<Rectangle>(shape)) {
+            out.push_back(std::span(analytic.rectangles).subspan(rectangle++, 1));
+        } else {
+            out.push_back(std::span(analytic.disks).subspan(disk++, 1));
+        }
+    }
+    return out;
+}
+
+Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution, Diagnostics& diagnostics) {
+    std::string hash = scene_hash(scene);
+    sanitize(scene, diagnostics);
+    if (auto status = validate(scene); !status) return std::move(status).error();
+    bake_transforms(scene);
+    sanitize(scene, diagnostics);  // a transform may have moved vertices out of bounds
+
+    auto shading = make_shading_scene(std::move(scene), diagnostics);
+    if (!shading) return std::move(shading).error();
+
+    AnalyticShapes analytic(shading->scene.shapes);
+    const std::vector<Geometry> geometries = geometries_of(shading->scene, analytic);
+    std::vector<GeometryInstance> instances;
+    instances.reserve(shading->scene.instances.size());
+    for (const Instance& i : shading->scene.instances) instances.push_back({index(i.shape), i.world_from_object});
+
+    AccelOptions options;
+    options.builder = execution.bvh;
+    options.max_depth = execution.bvh_max_depth;
+    Result<Accel> accel = Error{};
+    with_threads(execution.threads, [&] { accel = Accel::build(geometries, instances, options); });
+    if (!accel) return std::move(accel).error();
+    return std::shared_ptr<const RenderScene>(std::make_shared<RenderScene>(
+        std::move(*shading), std::move(analytic.spheres), std::move(analytic.rectangles), std::move(analytic.disks),
+        std::move(*accel), std::move(hash)));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics) {
+    try {
+        return prepare_checked(std::move(scene), execution, diagnostics);
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::resources, "not enough memory to prepare the scene", {}, {}, {}};
+    } catch (const std::exception& e) {
+        return Error{ErrorCode::render_failed, fmt::format("cannot prepare the scene: {}", e.what()), {}, {}, {}};
+    }
+}
+
+}  // namespace steradian

@@ -1,0 +1,100 @@
+// The hash of a scene's content: every field that can reach a pixel, in declaration order, lengths included.
+#include "base/hash.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+namespace {
+
+class SceneHasher {
+public:
+    void scene(const Scene& s) {
+        list(s.images);
+        list(s.textures);
+        list(s.materials);
+        list(s.meshes);
+        list(s.shapes);
+        list(s.instances);
+        list(s.lights);
+        list(s.cameras);
+    }
+    std::string hex() const { return hash_.hex(); }
+
+private:
+    template <class T>
+    void list(const std::vector<T>& elements) {
+        hash_.value(uint64_t(elements.size()));
+        for (const T& element : elements) put(element);
+    }
+    template <class... T>
+    void put(const std::variant<T...>& v) {
+        hash_.value(uint32_t(v.index()));
+        std::visit([this](const auto& alternative) { put(alternative); }, v);
+    }
+    template <class T>
+        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void put(T v) {
+        hash_.value(v);
+    }
+    template <class... T>
+        requires(sizeof...(T) > 1)
+    void put(const T&... fields) {
+        (put(fields), ...);
+    }
+
+    void put(const Vec2& v) { put(v.x, v.y); }
+    void put(const Vec3& v) { put(v.x, v.y, v.z); }
+    void put(const Rgb& c) { put(c.r, c.g, c.b); }
+    void put(const Affine& a) {
+        for (const auto& row : a.m)
+            for (const double x : row) put(x);
+    }
+    void put(const RawImage& i) {
+        put(i.width, i.height, i.channels, i.format);
+        hash_.value(uint64_t(i.data.size()));
+        hash_.bytes(i.data.data(), i.data.size());
+    }
+    void put(const ConstantTexture& t) { put(t.value); }
+    void put(const ImageTexture& t) {
+        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset);
+    }
+    void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset); }
+    void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided); }
+    void put(const RefractionMaterial& m) { put(m.eta); }
+    void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance); }
+    void put(const MirrorMaterial& m) { put(m.reflectance); }
+    template <class T>
+    void raw(const std::vector<T>& values) {
+        hash_.value(uint64_t(values.size()));
+        hash_.bytes(values.data(), values.size() * sizeof(T));
+    }
+    void put(const Mesh& m) {
+        raw(m.positions);
+        raw(m.normals);
+        raw(m.uvs);
+        raw(m.indices);
+    }
+    void put(const Sphere& s) { put(s.center, s.radius); }
+    void put(const Rectangle& r) { put(r.center, r.half_u, r.half_v); }
+    void put(const Disk& d) { put(d.center, d.normal, d.radius); }
+    void put(const Instance& i) { put(i.shape, i.material, i.world_from_object); }
+    void put(const PointLight& l) { put(l.position, l.intensity); }
+    void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle); }
+    void put(const DirectionalLight& l) { put(l.direction, l.irradiance); }
+    void put(const AreaLight& l) { put(l.instance, l.radiance, l.two_sided, l.samples); }
+    void put(const EnvironmentLight& l) {
+        put(l.radiance, l.image.has_value(), l.image.value_or(ImageId{}), l.color_space, l.rotation, l.samples);
+    }
+    void put(const PerspectiveCamera& c) { put(c.position, c.look_at, c.up, c.vertical_fov); }
+
+    Hasher hash_;
+};
+
+}  // namespace
+
+std::string scene_hash(const Scene& scene) {
+    SceneHasher hasher;
+    hasher.scene(scene);
+    return hasher.hex();
+}
+
+}  // namespace steradian

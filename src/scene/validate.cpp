@@ -1,0 +1,254 @@
+#include "scene/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "math/ray.h"
+#include "math/transform.h"
+
+namespace steradian {
+namespace {
+
+/// Thrown inside this file only; validate() converts it.
+struct Fault {
+    std::string message;
+};
+
+class Validator {
+public:
+    explicit Validator(const Scene& scene) : s_(scene) {}
+
+    void run() {
+        each("image", s_.images, s_.names.images);
+        each("texture", s_.textures, s_.names.textures);
+        each("material", s_.materials, s_.names.materials);
+        each("mesh", s_.meshes, s_.names.meshes);
+        each("shape", s_.shapes, s_.names.shapes);
+        each("object", s_.instances, s_.names.instances);
+        each("light", s_.lights, s_.names.lights);
+        each("camera", s_.cameras, s_.names.cameras);
+        light_uniqueness();
+    }
+
+private:
+    template <class T>
+    void each(const char* kind, const std::vector<T>& elements, const std::vector<std::string>& names) {
+        if (elements.size() >= kNoHit) throw Fault{fmt::format("too many elements of kind {}", kind)};
+        for (size_t i = 0; i < elements.size(); ++i) {
+            where_ = i < names.size() && !names[i].empty() ? fmt::format("{} '{}'", kind, escape_for_display(names[i]))
+                                                           : fmt::format("{} {}", kind, i);
+            check(elements[i]);
+        }
+    }
+    template <class... T>
+    void check(const std::variant<T...>& v) {
+        std::visit([this](const auto& alternative) { check(alternative); }, v);
+    }
+    void require(bool good, const char* what) const {
+        if (!good) throw Fault{fmt::format("{}: {}", where_, what)};
+    }
+    template <class Id, class T>
+    void refers(Id id, const std::vector<T>& pool, const char* what) const {
+        if (index(id) >= pool.size()) throw Fault{fmt::format("{}: refers to {} {}, but there are {}", where_, what, index(id), pool.size())};
+    }
+    void color(Rgb c, const char* what) const {
+        require(is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0, what);
+    }
+    void point(Vec3 p, const char* what) const { require(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate, what); }
+    void direction(Vec3 d, const char* what) const {
+        require(is_finite(d) && (d.x != 0 || d.y != 0 || d.z != 0), what);
+    }
+    void uv_transform(Vec2 scale, Vec2 offset) const {
+        require(is_finite(scale.x) && is_finite(scale.y) && is_finite(offset.x) && is_finite(offset.y),
+                "scale and offset must be finite");
+    }
+
+    void check(const RawImage& i) const {
+        static constexpr uint64_t kSize[] = {1, 2, 2, 4};
+        require(i.width > 0 && i.height > 0 && i.channels >= 1 && i.channels <= 4, "an image needs pixels and 1 to 4 channels");
+        require(i.data.size() == uint64_t(i.width) * i.height * i.channels * kSize[size_t(i.format)],
+                "the image's data does not have the size that its header says");
+    }
+    void check(const ConstantTexture& t) const { color(t.value, "a colour must be finite and not negative"); }
+    void check(const ImageTexture& t) const {
+        refers(t.image, s_.images, "image");
+        uv_transform(t.scale, t.offset);
+    }
+    void check(const CheckerTexture& t) const {
+        color(t.even, "a colour must be finite and not negative");
+        color(t.odd, "a colour must be finite and not negative");
+        uv_transform(t.scale, t.offset);
+    }
+    void check(const DiffuseMaterial& m) const { refers(m.reflectance, s_.textures, "texture"); }
+    void eta(float value) const { require(value >= 1e-3f && value <= 1e3f, "eta must be between 0.001 and 1000"); }
+    void check(const RefractionMaterial& m) const { eta(m.eta); }
+    void check(const GlassMaterial& m) const {
+        eta(m.eta);
+        color(m.reflectance, "the reflectance must be finite and not negative");
+        color(m.transmittance, "the transmittance must be finite and not negative");
+    }
+    void check(const MirrorMaterial& m) const { color(m.reflectance, "the reflectance must be finite and not negative"); }
+
+    void check(const Mesh& m) const {
+        require(m.indices.size() % 3 == 0, "the number of indices must be a multiple of three");
+        require(m.indices.size() / 3 < kNoHit && m.positions.size() < kNoHit, "too many triangles or vertices for 32-bit ids");
+        require(m.normals.empty() || m.normals.size() == m.positions.size(), "there must be one normal per position, or none");
+        require(m.uvs.empty() || m.uvs.size() == m.positions.size(), "there must be one uv per position, or none");
+        const size_t count = m.positions.size();
+        require(std::all_of(m.indices.begin(), m.indices.end(), [&](uint32_t i) { return i < count; }),
+                "an index refers to a vertex that does not exist");
+        require(std::all_of(m.positions.begin(), m.positions.end(), is_usable), "a vertex is not finite or beyond 1e15");
+    }
+    static bool is_usable(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+    void check(MeshId id) const { refers(id, s_.meshes, "mesh"); }
+    void check(const Sphere& s) const {
+        point(s.center, "the centre must be finite and within 1e15");
+        require(s.radius > 0 && s.radius <= kMaxCoordinate, "the radius must be positive and at most 1e15");
+    }
+    void check(const Rectangle& r) const {
+        point(r.center, "the centre must be finite and within 1e15");
+        point(r.half_u, "the axes must be finite and within 1e15");
+        point(r.half_v, "the axes must be finite and within 1e15");
+    }
+    void check(const Disk& d) const {
+        point(d.center, "the centre must be finite and within 1e15");
+        direction(d.normal, "the normal must be finite and not zero");
+        require(d.radius > 0 && d.radius <= kMaxCoordinate, "the radius must be positive and at most 1e15");
+    }
+    void check(const Instance& i) const {
+        refers(i.shape, s_.shapes, "shape");
+        refers(i.material, s_.materials, "material");
+        require(inverse(i.world_from_object).has_value(), "the transform is singular or not finite");
+    }
+
+    void check(const PointLight& l) const {
+        point(l.position, "the position must be finite and within 1e15");
+        color(l.intensity, "the intensity must be finite and not negative");
+    }
+    void check(const SpotLight& l) const {
+        point(l.position, "the position must be finite and within 1e15");
+        direction(l.direction, "the direction must be finite and not zero");
+        color(l.intensity, "the intensity must be finite and not negative");
+        require(l.outer_angle > 0 && l.outer_angle <= 180, "the outer angle must be in (0, 180] degrees");
+        require(l.inner_angle >= 0 && l.inner_angle <= l.outer_angle, "the inner angle must be between 0 and the outer angle");
+    }
+    void check(const DirectionalLight& l) const {
+        direction(l.direction, "the direction must be finite and not zero");
+        color(l.irradiance, "the irradiance must be finite and not negative");
+    }
+    void samples(uint32_t n) const { require(n >= 1 && n <= 4096, "the number of light samples must be between 1 and 4096"); }
+    void check(const AreaLight& l) const {
+        refers(l.instance, s_.instances, "object");
+        color(l.radiance, "the radiance must be finite and not negative");
+        samples(l.samples);
+    }
+    void check(const EnvironmentLight& l) const {
+        color(l.radiance, "the radiance must be finite and not negative");
+        if (l.image) refers(*l.image, s_.images, "image");
+        require(is_finite(l.rotation), "the rotation must be finite");
+        samples(l.samples);
+    }
+    /// Whether the axes make sense together is the camera's own business (CameraSampler::make).
+    void check(const PerspectiveCamera& c) const {
+        point(c.position, "the position must be finite and within 1e15");
+        point(c.look_at, "look_at must be finite and within 1e15");
+        direction(c.up, "up must be finite and not zero");
+        require(c.vertical_fov > 0 && c.vertical_fov < 180, "the field of view must be between 0 and 180 degrees");
+    }
+
+    void light_uniqueness() const {
+        size_t environments = 0;
+        std::vector<bool> lit(s_.instances.size());
+        for (const Light& light : s_.lights) {
+            environments += std::holds_alternative<EnvironmentLight>(light);
+            if (const auto* area = std::get_if<AreaLight>(&light)) {
+                if (lit[index(area->instance)])
+                    throw Fault{fmt::format("object {} has two area lights, at most one is possible", index(area->instance))};
+                lit[index(area->instance)] = true;
+            }
+        }
+        if (environments > 1) throw Fault{"there are two environment lights, at most one is possible"};
+    }
+
+    const Scene& s_;
+    std::string where_;
+};
+
+bool usable_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
+/// Removes triangles with an unusable vertex and moves unusable vertices to the origin, where nothing refers to them.
+uint64_t drop_triangles(Mesh& mesh) {
+    std::vector<Vec3>& positions = mesh.positions;
+    if (std::all_of(positions.begin(), positions.end(), usable_position)) return 0;
+    size_t kept = 0;
+    uint64_t dropped = 0;
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        bool good = true;
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t v = mesh.indices[i + k];
+            good = good && (v >= positions.size() || usable_position(positions[v]));
+        }
+        if (good) {
+            std::copy_n(mesh.indices.begin() + std::ptrdiff_t(i), 3, mesh.indices.begin() + std::ptrdiff_t(kept));
+            kept += 3;
+        } else {
+            ++dropped;
+        }
+    }
+    mesh.indices.resize(kept);
+    for (Vec3& p : positions)
+        if (!usable_position(p)) p = {};
+    return dropped;
+}
+
+}  // namespace
+
+Status validate(const Scene& scene) {
+    try {
+        Validator(scene).run();
+        return Ok{};
+    } catch (const Fault& fault) {
+        return Error{ErrorCode::bad_input, fault.message, {}, {}, {}};
+    }
+}
+
+void sanitize(Scene& scene, Diagnostics& diagnostics) {
+    uint64_t triangles = 0, uvs = 0, normals = 0;
+    for (Mesh& mesh : scene.meshes) {
+        triangles += drop_triangles(mesh);
+        for (Vec2& uv : mesh.uvs)
+            if (!is_finite(uv.x) || !is_finite(uv.y)) uv = {}, ++uvs;
+        // A zero normal stands for "use the flat one" and is understood as such by surface_at.
+        for (Vec3& n : mesh.normals)
+            if (!is_finite(n)) n = {}, ++normals;
+    }
+    if (triangles) diagnostics.warn("triangles with vertices that are not finite or beyond 1e15 were dropped", {}, triangles);
+    if (uvs) diagnostics.warn("texture coordinates that are not finite were replaced by 0", {}, uvs);
+    if (normals) diagnostics.warn("normals that are not finite were replaced by the flat ones", {}, normals);
+}
+
+void bake_transforms(Scene& scene) {
+    // An object is what counts: two shapes may name one mesh.
+    std::vector<uint32_t> users(scene.meshes.size(), 0);
+    const auto mesh_of = [&](const Instance& i) { return std::get_if<MeshId>(&scene.shapes[index(i.shape)]); };
+    for (const Instance& i : scene.instances)
+        if (const MeshId* mesh = mesh_of(i)) ++users[index(*mesh)];
+    for (Instance& i : scene.instances) {
+        const MeshId* id = mesh_of(i);
+        if (!id || users[index(*id)] != 1 || is_identity(i.world_from_object)) continue;
+        const Affine& world_from_object = i.world_from_object;
+        const auto object_from_world = inverse(world_from_object);
+        if (!object_from_world) continue;
+        Mesh& mesh = scene.meshes[index(*id)];
+        for (Vec3& p : mesh.positions) p = Vec3(transform_point(world_from_object, p));
+        for (Vec3& n : mesh.normals) n = Vec3(normalize(transform_normal_by_inverse(*object_from_world, n)));
+        // A mirror image turns the winding around; outside stays outside.
+        if (determinant(world_from_object) < 0)
+            for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) std::swap(mesh.indices[k + 1], mesh.indices[k + 2]);
+        i.world_from_object = {};
+    }
+}
+
+}  // namespace steradian
