@@ -3,20 +3,18 @@
 // the result type and are checked by the tests against the C library.
 #pragma once
 
-#include <cstdint>
-
 #include "math/fp_contract.h"
 
 namespace steradian::math {
 
-// double in, double out. Below 2 ulp unless said otherwise. Special values as in C's Annex F.
-double sin(double x);  ///< |x| up to 1e6; beyond that the reduction loses digits, and NaN is returned above 2^52
+// double in, double out. Below 1 ulp unless said otherwise. Special values as in C's Annex F.
+double sin(double x);  ///< NaN for |x| > 2^52, in all three
 double cos(double x);
-double tan(double x);
+double tan(double x);  ///< below 2 ulp
 double exp(double x);
-double log(double x);   ///< x < 0: NaN; 0: -infinity
+double log(double x);  ///< x < 0: NaN; 0: -infinity
 double log2(double x);
-double pow(double x, double y);  ///< via exp and log with extra digits; below 4 ulp
+double pow(double x, double y);  ///< via exp and log with extra digits
 double atan2(double y, double x);
 double acos(double x);
 double asin(double x);
@@ -28,7 +26,9 @@ inline float tan(float x) { return static_cast<float>(tan(static_cast<double>(x)
 inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }
 inline float log(float x) { return static_cast<float>(log(static_cast<double>(x))); }
 inline float pow(float x, float y) { return static_cast<float>(pow(static_cast<double>(x), static_cast<double>(y))); }
-inline float atan2(float y, float x) { return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x))); }
+inline float atan2(float y, float x) {
+    return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
+}
 inline float acos(float x) { return static_cast<float>(acos(static_cast<double>(x))); }
 inline float asin(float x) { return static_cast<float>(asin(static_cast<double>(x))); }
 

@@ -8,7 +8,8 @@ Affine operator*(const Affine& a, const Affine& b) {
     Affine out;
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 4; ++c)
-            out.m[r][c] = a.m[r][0] * b.m[0][c] + a.m[r][1] * b.m[1][c] + a.m[r][2] * b.m[2][c] + (c == 3 ? a.m[r][3] : 0.0);
+            out.m[r][c] =
+                a.m[r][0] * b.m[0][c] + a.m[r][1] * b.m[1][c] + a.m[r][2] * b.m[2][c] + (c == 3 ? a.m[r][3] : 0.0);
     return out;
 }
 
@@ -93,10 +94,12 @@ bool is_finite(const Affine& a) {
 }
 
 std::optional<double> uniform_scale(const Affine& a) {
-    const Vec3d c[3] = {{a.m[0][0], a.m[1][0], a.m[2][0]}, {a.m[0][1], a.m[1][1], a.m[2][1]}, {a.m[0][2], a.m[1][2], a.m[2][2]}};
+    const Vec3d c[3] = {
+        {a.m[0][0], a.m[1][0], a.m[2][0]}, {a.m[0][1], a.m[1][1], a.m[2][1]}, {a.m[0][2], a.m[1][2], a.m[2][2]}};
     const double s2 = dot(c[0], c[0]), tolerance = 1e-6 * s2;
     for (int i = 0; i < 3; ++i)
-        if (!(std::fabs(dot(c[i], c[i]) - s2) <= tolerance) || !(std::fabs(dot(c[i], c[(i + 1) % 3])) <= tolerance)) return std::nullopt;
+        if (!(std::fabs(dot(c[i], c[i]) - s2) <= tolerance) || !(std::fabs(dot(c[i], c[(i + 1) % 3])) <= tolerance))
+            return std::nullopt;
     return std::sqrt(s2);
 }
 
