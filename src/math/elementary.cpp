@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace steradian::math {
@@ -260,14 +261,11 @@ Dd first_quadrant_angle(Dd y, Dd x) {
 /// √(1 - x²) for |x| <= 1.
 Dd root_of_one_minus_square(double x) {
     const Dd square = two_product(x, x);
-    const Dd rest = two_sum(1 - square.hi, -square.lo);
-    // 1 - square.hi is exact when square.hi >= 1/2; otherwise what it lost is recovered here.
-    const double lost = (1 - (1 - square.hi)) - square.hi;
-    const double low = rest.lo + lost;
+    const Dd rest = add(quick_sum(1, -square.hi), {-square.lo, 0});
     const double root = std::sqrt(rest.hi);
     if (root == 0) return {0, 0};
     const Dd p = two_product(root, root);
-    return {root, (((rest.hi - p.hi) - p.lo) + low) / (2 * root)};
+    return {root, (((rest.hi - p.hi) - p.lo) + rest.lo) / (2 * root)};
 }
 
 }  // namespace
