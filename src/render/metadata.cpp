@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/names.h"
 #include "steradian/version.h"
 
 namespace steradian {
@@ -23,31 +24,6 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     if (min_samples != s.samples_per_pixel)
         m["steradian:partial"] = fmt::format("{} to {} of {} samples", min_samples, max_samples, s.samples_per_pixel);
     return m;
-}
-
-const char* name_of(IntegratorKind kind) noexcept {
-    switch (kind) {
-        case IntegratorKind::direct: return "direct";
-    }
-    return "";
-}
-
-const char* name_of(SamplerKind kind) noexcept {
-    switch (kind) {
-        case SamplerKind::sobol: return "sobol";
-        case SamplerKind::independent: return "independent";
-    }
-    return "";
-}
-
-const char* name_of(FilterKind kind) noexcept {
-    switch (kind) {
-        case FilterKind::box: return "box";
-        case FilterKind::tent: return "tent";
-        case FilterKind::gaussian: return "gaussian";
-        case FilterKind::mitchell: return "mitchell";
-    }
-    return "";
 }
 
 }  // namespace steradian

@@ -11,9 +11,4 @@ namespace steradian {
 std::map<std::string, std::string> picture_metadata(const RenderSettings& settings, const std::string& scene_hash,
                                                     uint64_t min_samples, uint64_t max_samples);
 
-/// The names of the settings' kinds, as the scene format and the command line spell them.
-const char* name_of(IntegratorKind kind) noexcept;
-const char* name_of(SamplerKind kind) noexcept;
-const char* name_of(FilterKind kind) noexcept;
-
 }  // namespace steradian

@@ -1,0 +1,170 @@
+// steradian info: what is in a scene or in a picture.
+#include <fmt/format.h>
+#include <rapidjson/prettywriter.h>
+#include <rapidjson/stringbuffer.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "base/text.h"
+#include "command.h"
+#include "math/transform.h"
+#include "picture_info.h"
+#include "progress.h"
+#include "scene/names.h"
+#include "steradian/load.h"
+
+namespace steradian::cli {
+namespace {
+
+struct SceneSummary {
+    uint64_t triangles = 0;         ///< stored once however often they are used
+    uint64_t placed_triangles = 0;  ///< as they appear in the world
+    uint64_t vertices = 0;
+    uint64_t geometry_bytes = 0, texel_bytes = 0;
+    Vec3 lo{kInfinity, kInfinity, kInfinity}, hi{-kInfinity, -kInfinity, -kInfinity};
+};
+
+template <class T>
+uint64_t bytes_of(const std::vector<T>& v) {
+    return v.size() * sizeof(T);
+}
+
+void grow(SceneSummary& s, Vec3 p) {
+    for (int a = 0; a < 3; ++a) s.lo[a] = min_of(s.lo[a], p[a]), s.hi[a] = max_of(s.hi[a], p[a]);
+}
+
+/// World bounds by the corners of each shape's own box: exact for boxes, slightly large for rotated ones.
+void grow(SceneSummary& s, const Instance& instance, Vec3 lo, Vec3 hi) {
+    for (int corner = 0; corner < 8; ++corner)
+        grow(s, Vec3(transform_point(instance.world_from_object, Vec3{corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z})));
+}
+
+SceneSummary summarize(const Scene& scene) {
+    SceneSummary s;
+    std::vector<SceneSummary> meshes(scene.meshes.size());
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+        const Mesh& m = scene.meshes[i];
+        for (const Vec3& p : m.positions) grow(meshes[i], p);
+        s.triangles += m.indices.size() / 3;
+        s.vertices += m.positions.size();
+        s.geometry_bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
+    }
+    for (const RawImage& image : scene.images) s.texel_bytes += image.data.size();
+    for (const Instance& i : scene.instances) {
+        const Shape& shape = scene.shapes[index(i.shape)];
+        if (const auto* id = std::get_if<MeshId>(&shape)) {
+            const SceneSummary& m = meshes[index(*id)];
+            s.placed_triangles += scene.meshes[index(*id)].indices.size() / 3;
+            if (m.lo.x <= m.hi.x) grow(s, i, m.lo, m.hi);
+        } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+            const Vec3 r{sphere->radius, sphere->radius, sphere->radius};
+            grow(s, i, sphere->center - r, sphere->center + r);
+        } else if (const auto* rect = std::get_if<Rectangle>(&shape)) {
+            const Vec3 r = abs(rect->half_u) + abs(rect->half_v);
+            grow(s, i, rect->center - r, rect->center + r);
+        } else {
+            const Disk& disk = std::get<Disk>(shape);
+            const Vec3 r{disk.radius, disk.radius, disk.radius};
+            grow(s, i, disk.center - r, disk.center + r);
+        }
+    }
+    return s;
+}
+
+const char* kind_of(const Light& light) {
+    static constexpr const char* kNames[] = {"point", "spot", "directional", "area", "environment"};
+    return kNames[light.index()];
+}
+
+std::string camera_name(const Scene& scene, size_t i) {
+    return i < scene.names.cameras.size() ? scene.names.cameras[i] : std::to_string(i);
+}
+
+void print_text(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
+    const Scene& scene = loaded.scene;
+    const RenderSettings& r = loaded.settings;
+    std::cout << fmt::format("{}: a scene\n", escape_for_display(path, 4096));
+    std::cout << fmt::format("  hash       {}\n", scene_hash(scene));
+    std::cout << fmt::format("  objects    {} ({} shapes, {} meshes)\n", scene.instances.size(), scene.shapes.size(), scene.meshes.size());
+    std::cout << fmt::format("  triangles  {} stored, {} placed, {} vertices\n", s.triangles, s.placed_triangles, s.vertices);
+    if (s.lo.x <= s.hi.x)
+        std::cout << fmt::format("  bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", s.lo.x, s.lo.y, s.lo.z, s.hi.x, s.hi.y, s.hi.z);
+    std::cout << fmt::format("  materials  {}, textures {}, images {}\n", scene.materials.size(), scene.textures.size(), scene.images.size());
+    std::cout << fmt::format("  lights     {}", scene.lights.size());
+    for (size_t kind = 0; kind < std::variant_size_v<Light>; ++kind) {
+        const auto n = std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; });
+        if (n) std::cout << fmt::format(", {} {}", n, kind_of(*std::find_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; })));
+    }
+    std::cout << "\n  cameras    " << scene.cameras.size();
+    for (size_t i = 0; i < scene.cameras.size(); ++i) std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
+    std::cout << fmt::format("\n  memory     {}B of geometry, {}B of texels, before the hierarchy\n", format_quantity(double(s.geometry_bytes)), format_quantity(double(s.texel_bytes)));
+    std::cout << fmt::format("  settings   {}x{}, {} samples per pixel, {} integrator, depth {}, {} filter of radius {:.3g}, {} sampler, seed {}\n",
+                             r.width, r.height, r.samples_per_pixel, name_of(r.integrator), r.max_depth, name_of(r.filter.kind), r.filter.radius, name_of(r.sampler), r.seed);
+}
+
+void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
+    const Scene& scene = loaded.scene;
+    rapidjson::StringBuffer buffer;
+    rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
+    const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
+    const auto text = [&](const char* key, std::string_view value) { w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size())); };
+    w.StartObject();
+    text("file", path), text("kind", "scene"), text("hash", scene_hash(scene));
+    number("objects", scene.instances.size()), number("shapes", scene.shapes.size()), number("meshes", scene.meshes.size());
+    number("triangles", s.triangles), number("placed_triangles", s.placed_triangles), number("vertices", s.vertices);
+    number("materials", scene.materials.size()), number("textures", scene.textures.size()), number("images", scene.images.size());
+    number("geometry_bytes", s.geometry_bytes), number("texel_bytes", s.texel_bytes);
+    w.Key("lights"), w.StartArray();
+    for (const Light& light : scene.lights) w.String(kind_of(light));
+    w.EndArray();
+    w.Key("cameras"), w.StartArray();
+    for (size_t i = 0; i < scene.cameras.size(); ++i) w.String(camera_name(scene, i).c_str());
+    w.EndArray();
+    if (s.lo.x <= s.hi.x) {
+        w.Key("bounds"), w.StartArray();
+        for (const Vec3 p : {s.lo, s.hi}) {
+            w.StartArray();
+            for (int a = 0; a < 3; ++a) w.Double(double(p[a]));
+            w.EndArray();
+        }
+        w.EndArray();
+    }
+    const RenderSettings& r = loaded.settings;
+    w.Key("settings"), w.StartObject();
+    number("width", r.width), number("height", r.height), number("spp", r.samples_per_pixel);
+    text("integrator", name_of(r.integrator)), number("max_depth", r.max_depth);
+    text("filter", name_of(r.filter.kind)), w.Key("filter_radius"), w.Double(double(r.filter.radius));
+    text("sampler", name_of(r.sampler)), number("seed", r.seed);
+    w.EndObject();
+    w.EndObject();
+    std::cout << buffer.GetString() << std::endl;
+}
+
+int run_info(const std::string& path, bool json) {
+    static constexpr std::string_view kPictures[] = {".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg"};
+    const std::string extension = extension_of(path);
+    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures)) {
+        const Status status = print_picture_info(path, json, std::cout);
+        return status ? kDone : report(status.error());
+    }
+    const auto loaded = load_scene(path);
+    if (!loaded) return report(loaded.error());
+    report(loaded->diagnostics);
+    const SceneSummary summary = summarize(loaded->scene);
+    json ? print_json(path, *loaded, summary) : print_text(path, *loaded, summary);
+    return kDone;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+    auto path = std::make_shared<std::string>();
+    auto json = std::make_shared<bool>(false);
+    CLI::App* c = app.add_subcommand("info", "What is in a scene (counts, bounds, memory, settings) or a picture (metadata, hash)");
+    c->add_option("FILE", *path, "A scene, a model or a picture")->required();
+    c->add_flag("--json", *json, "As JSON");
+    c->callback([path, json, &action] { action = [path, json] { return run_info(*path, *json); }; });
+}
+
+}  // namespace steradian::cli

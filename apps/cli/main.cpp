@@ -1,0 +1,67 @@
+// The steradian command: picks the subcommand, maps every failure to its exit code.
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "command.h"
+#include "steradian/version.h"
+
+namespace steradian::cli {
+namespace {
+
+constexpr const char* kAbout =
+    "Steradian renders 3D scenes on the CPU. The same scene, settings and seed give the same bits on every machine,\n"
+    "with any number of threads.";
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  steradian render scene.json -o picture.png            render with the settings of the scene\n"
+    "  steradian render model.obj --spp 256 --size 1920x1080 a bare model gets a camera and a studio light\n"
+    "  steradian render scene.json -o a.exr -o a.png --json  two files, statistics on standard output\n"
+    "  steradian info scene.json                             what is in a scene, or in a picture\n"
+    "  steradian convert a.exr a.png --view agx              from linear light to something to look at\n"
+    "  steradian diff a.exr b.exr                            how far two pictures are apart\n"
+    "\n"
+    "Each command has its own help: steradian render --help\n"
+    "Exit codes: 0 done, 1 render failed, 2 usage, 3 bad scene or image, 4 disk, memory or a limit, 130/143 stopped.";
+
+int run(int argc, char** argv) {
+    CLI::App app{kAbout, "steradian"};
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string("steradian ") + STERADIAN_VERSION, "Show the version");
+    app.require_subcommand(1);
+    Action action;
+    add_render(app, action);
+    add_info(app, action);
+    add_convert(app, action);
+    add_diff(app, action);
+    if (argc <= 1) {
+        std::cout << app.help();
+        return kUsage;
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? kDone : kUsage;
+    }
+    return action();
+}
+
+}  // namespace
+}  // namespace steradian::cli
+
+int main(int argc, char** argv) {
+    // A closed pipe or a file-size limit is an error of the write that meets it, not the end of the process.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    try {
+        return steradian::cli::run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::fputs("error: not enough memory\n", stderr);
+        return steradian::cli::kResources;
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "error: %s\n", e.what());
+        return steradian::cli::kRenderFailed;
+    }
+}
