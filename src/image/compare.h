@@ -8,9 +8,9 @@ namespace steradian {
 
 /// Over all pixels and the channels that both have, in double.
 struct ImageDifference {
-    double mse = 0;       ///< mean (a - b)²
-    double rel_mse = 0;   ///< mean (a - b)² / (b² + 1e-2); b is the reference
-    double psnr = 0;      ///< dB for a peak of 1; infinite when equal
+    double mse = 0;      ///< mean (a - b)²
+    double rel_mse = 0;  ///< mean (a - b)² / (b² + 1e-2); b is the reference
+    double psnr = 0;     ///< dB for a peak of 1; infinite when equal
     double max_abs = 0;
     uint32_t max_x = 0, max_y = 0;
     uint64_t different_pixels = 0;  ///< with any bit different
