@@ -1,0 +1,94 @@
+// The scene's hash notices every field, and nothing but content.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+#include "steradian/scene.h"
+
+namespace steradian {
+namespace {
+
+Scene full_scene() {
+    Scene s;
+    s.images.push_back({2, 1, 3, TexelFormat::u8, std::vector<std::byte>(6)});
+    add<TextureId>(s.textures, Texture(ConstantTexture{}));
+    add<TextureId>(s.textures, Texture(ImageTexture{}));
+    add<TextureId>(s.textures, Texture(CheckerTexture{}));
+    add<MaterialId>(s.materials, Material(DiffuseMaterial{}));
+    add<MaterialId>(s.materials, Material(RefractionMaterial{}));
+    add<MaterialId>(s.materials, Material(GlassMaterial{}));
+    add<MaterialId>(s.materials, Material(MirrorMaterial{}));
+    s.meshes.push_back({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
+    add<ShapeId>(s.shapes, Shape(MeshId{0}));
+    add<ShapeId>(s.shapes, Shape(Sphere{}));
+    add<ShapeId>(s.shapes, Shape(Rectangle{}));
+    add<ShapeId>(s.shapes, Shape(Disk{}));
+    s.instances.push_back({});
+    s.lights = {PointLight{}, SpotLight{}, DirectionalLight{}, AreaLight{}, EnvironmentLight{}};
+    s.cameras = {PerspectiveCamera{}};
+    return s;
+}
+
+using Change = std::function<void(Scene&)>;
+
+std::vector<Change> changes() {
+    return {
+        [](Scene& s) { s.images[0].data[5] = std::byte{1}; },
+        [](Scene& s) { s.images[0].width = 1, s.images[0].height = 2; },
+        [](Scene& s) { s.images[0].format = TexelFormat::u16; },
+        [](Scene& s) { std::get<ConstantTexture>(s.textures[0]).value.g = 0.25f; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).wrap_v = Wrap::mirror; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).bilinear = false; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).color_space = ColorSpace::linear; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).offset.y = 1; },
+        [](Scene& s) { std::get<CheckerTexture>(s.textures[2]).odd.b = 1; },
+        [](Scene& s) { std::get<CheckerTexture>(s.textures[2]).scale.x = 2; },
+        [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).two_sided = true; },
+        [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{1}; },
+        [](Scene& s) { std::get<RefractionMaterial>(s.materials[1]).eta = 2; },
+        [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).transmittance.r = 0.5f; },
+        [](Scene& s) { std::get<MirrorMaterial>(s.materials[3]).reflectance.r = 0.5f; },
+        [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
+        [](Scene& s) { s.meshes[0].positions[2].z = 1; },
+        [](Scene& s) { s.meshes[0].normals.clear(); },
+        [](Scene& s) { s.meshes[0].uvs[1].x = 0.5f; },
+        [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
+        [](Scene& s) { std::get<Sphere>(s.shapes[1]).radius = 2; },
+        [](Scene& s) { std::get<Rectangle>(s.shapes[2]).half_v.y = 2; },
+        [](Scene& s) { std::get<Disk>(s.shapes[3]).normal.x = 2; },
+        [](Scene& s) { s.instances[0].world_from_object = translation(0, 1e-9, 0); },
+        [](Scene& s) { s.instances[0].material = MaterialId{1}; },
+        [](Scene& s) { std::get<PointLight>(s.lights[0]).intensity.b = 2; },
+        [](Scene& s) { std::get<SpotLight>(s.lights[1]).inner_angle = 20; },
+        [](Scene& s) { std::get<DirectionalLight>(s.lights[2]).direction.x = 1; },
+        [](Scene& s) { std::get<AreaLight>(s.lights[3]).samples = 4; },
+        [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).image = ImageId{0}; },
+        [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).rotation = 90; },
+        [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up.x = 1; },
+        [](Scene& s) { s.lights.pop_back(); },
+        [](Scene& s) { std::swap(s.lights[0], s.lights[1]); },
+    };
+}
+
+TEST(SceneHash, EveryFieldCounts) {
+    std::set<std::string> hashes{scene_hash(full_scene())};
+    size_t i = 0;
+    for (const Change& change : changes()) {
+        Scene s = full_scene();
+        change(s);
+        EXPECT_TRUE(hashes.insert(scene_hash(s)).second) << "change " << i << " was not noticed";
+        ++i;
+    }
+}
+
+TEST(SceneHash, NamesDoNotCount) {
+    Scene s = full_scene();
+    const std::string before = scene_hash(s);
+    s.names.materials = {"wood"};
+    EXPECT_EQ(scene_hash(s), before);
+    EXPECT_EQ(before.size(), 32u);
+}
+
+}  // namespace
+}  // namespace steradian

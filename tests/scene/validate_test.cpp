@@ -1,0 +1,126 @@
+#include "scene/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "math/transform.h"
+
+namespace steradian {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+Scene good_scene() {
+    Scene s;
+    const auto texture = add<TextureId>(s.textures, Texture(ConstantTexture{}));
+    const auto material = add<MaterialId>(s.materials, Material(DiffuseMaterial{texture}));
+    const auto mesh = add<MeshId>(s.meshes, Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}});
+    const auto shape = add<ShapeId>(s.shapes, Shape(mesh));
+    add<ShapeId>(s.shapes, Shape(Sphere{{0, 0, 0}, 1}));
+    s.instances.push_back({shape, material, {}});
+    s.lights = {PointLight{}, EnvironmentLight{}, AreaLight{InstanceId{0}}};
+    s.cameras = {PerspectiveCamera{}};
+    s.names.materials = {"wood\x1b"};
+    return s;
+}
+
+struct Fault {
+    const char* expected;  ///< part of the message
+    std::function<void(Scene&)> inject;
+};
+
+class ValidateFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(ValidateFault, IsNamed) {
+    Scene s = good_scene();
+    GetParam().inject(s);
+    const Status status = validate(s);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().code, ErrorCode::bad_input);
+    EXPECT_NE(status.error().message.find(GetParam().expected), std::string::npos) << status.error().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ValidateFault,
+    testing::Values(
+        Fault{"material 'wood\\x1b': refers to texture 7, but there are 1", [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
+        Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
+        Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
+        Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},
+        Fault{"mesh 0: an index refers to a vertex", [](Scene& s) { s.meshes[0].indices[1] = 3; }},
+        Fault{"multiple of three", [](Scene& s) { s.meshes[0].indices.push_back(0); }},
+        Fault{"one normal per position", [](Scene& s) { s.meshes[0].normals.resize(2); }},
+        Fault{"one uv per position", [](Scene& s) { s.meshes[0].uvs.resize(4); }},
+        Fault{"not finite or beyond 1e15", [](Scene& s) { s.meshes[0].positions[0].x = 2e15f; }},
+        Fault{"radius must be positive", [](Scene& s) { s.shapes[1] = Sphere{{}, 0}; }},
+        Fault{"radius must be positive", [](Scene& s) { s.shapes[1] = Sphere{{}, kNan}; }},
+        Fault{"centre must be finite", [](Scene& s) { s.shapes[1] = Rectangle{{kInf, 0, 0}, {1, 0, 0}, {0, 1, 0}}; }},
+        Fault{"normal must be finite and not zero", [](Scene& s) { s.shapes[1] = Disk{{}, {0, 0, 0}, 1}; }},
+        Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
+        Fault{"singular or not finite", [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
+        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
+        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
+        Fault{"not negative", [](Scene& s) { s.textures[0] = ConstantTexture{{-1, 0, 0}}; }},
+        Fault{"refers to image 0", [](Scene& s) { s.textures[0] = ImageTexture{}; }},
+        Fault{"size that its header says", [](Scene& s) { s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)}); }},
+        Fault{"light 0: the intensity", [](Scene& s) { s.lights[0] = PointLight{{}, {kNan, 0, 0}}; }},
+        Fault{"inner angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45}; }},
+        Fault{"outer angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181}; }},
+        Fault{"direction must be finite and not zero", [](Scene& s) { s.lights[0] = DirectionalLight{{0, 0, 0}}; }},
+        Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
+        Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
+        Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
+        Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
+        Fault{"camera 0: the field of view", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
+        Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
+
+TEST(Validate, AcceptsAGoodScene) {
+    const Status status = validate(good_scene());
+    EXPECT_TRUE(status.ok()) << status.error().message;
+    EXPECT_TRUE(validate(Scene{}).ok());
+}
+
+TEST(Sanitize, DropsTrianglesWithUnusableVerticesAndCountsThem) {
+    Scene s = good_scene();
+    Mesh& m = s.meshes[0];
+    m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {kNan, 0, 0}, {0, 2e15f, 0}};
+    m.uvs = {{0, 0}, {kInf, 0}, {0, 0}, {0, 0}, {0, 0}};
+    m.normals = {{0, 0, 1}, {0, 0, 1}, {kNan, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    m.indices = {0, 1, 3, 0, 1, 2, 2, 1, 4, 3, 3, 4};
+    Diagnostics diagnostics;
+    sanitize(s, diagnostics);
+    EXPECT_EQ(m.indices, (std::vector<uint32_t>{0, 1, 2}));
+    ASSERT_EQ(diagnostics.warnings().size(), 3u);
+    EXPECT_EQ(diagnostics.warnings()[0].count, 3u);
+    EXPECT_TRUE(validate(s).ok());
+    EXPECT_EQ(m.normals[2], Vec3{});
+}
+
+TEST(BakeTransforms, MovesAMeshThatIsUsedOnceAndKeepsOutsideOutside) {
+    Scene s = good_scene();
+    s.meshes[0].normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    s.instances[0].world_from_object = translation(10, 0, 0) * scaling(2, 2, -2);
+    bake_transforms(s);
+    const Mesh& m = s.meshes[0];
+    EXPECT_TRUE(is_identity(s.instances[0].world_from_object));
+    EXPECT_EQ(m.positions[1], (Vec3{12, 0, 0}));
+    EXPECT_EQ(m.normals[0], (Vec3{0, 0, -1}));
+    const Vec3 p0 = m.positions[m.indices[0]], p1 = m.positions[m.indices[1]], p2 = m.positions[m.indices[2]];
+    EXPECT_LT(cross(p1 - p0, p2 - p0).z, 0);  // the mirrored object's outside is where its normals point
+}
+
+TEST(BakeTransforms, LeavesSharedMeshesAlone) {
+    Scene s = good_scene();
+    s.instances[0].world_from_object = translation(10, 0, 0);
+    s.instances.push_back(s.instances[0]);
+    bake_transforms(s);
+    EXPECT_EQ(s.meshes[0].positions[1], (Vec3{1, 0, 0}));
+    EXPECT_FALSE(is_identity(s.instances[0].world_from_object));
+}
+
+}  // namespace
+}  // namespace steradian
