@@ -1,0 +1,202 @@
+// Wavefront OBJ: text to records, records to meshes, and the materials that they use.
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "formats/mesh/asset_path.h"
+#include "formats/mesh/parse_failure.h"
+#include "formats/mesh_file.h"
+#include "formats/obj/build.h"
+#include "formats/obj/mtl.h"
+#include "formats/obj/records.h"
+
+namespace steradian {
+namespace {
+
+/// More files than any exporter writes; a hostile one could name thousands of large ones.
+constexpr size_t kMaxLibraries = 256;
+
+std::string describe(obj::Remark kind, std::string_view word) {
+    switch (kind) {
+        case obj::Remark::vertex_color:
+            return "vertex colours are not used";
+        case obj::Remark::points:
+            return "points (p) are not drawn";
+        case obj::Remark::lines:
+            return "lines (l) are not drawn";
+        case obj::Remark::free_form:
+            return "free-form curves and surfaces are not supported";
+        case obj::Remark::unknown_keyword:
+            return word.empty() ? "other unknown keywords ignored"
+                                : "unknown keyword '" + escape_for_display(word, 60) + "' ignored";
+        case obj::Remark::uvs_missing:
+            return "faces refer to texture coordinates, but the file has no vt lines; they have none";
+        case obj::Remark::normals_missing:
+            return "faces refer to normals, but the file has no vn lines; smoothing groups count";
+        case obj::Remark::bad_smoothing:
+            return "not a smoothing group (expected a whole number, on or off); taken as off";
+    }
+    return {};
+}
+
+/// The names after `mtllib`: separated by white space, where a backslash keeps the blank after it in the name.
+std::vector<std::string> split_names(std::string_view names) {
+    std::vector<std::string> out;
+    std::string name;
+    for (size_t i = 0; i < names.size(); ++i) {
+        const char c = names[i];
+        const bool blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
+        const char following = i + 1 < names.size() ? names[i + 1] : '\0';
+        if (c == '\\' && (following == ' ' || following == '\t')) {
+            name += names[++i];
+        } else if (blank || (c == '\\' && (following == '\r' || following == '\n'))) {
+            if (!name.empty()) out.push_back(std::move(name));
+            name.clear();
+        } else {
+            name += c;
+        }
+    }
+    if (!name.empty()) out.push_back(std::move(name));
+    return out;
+}
+
+/// Materials of all libraries by name; the first definition counts.
+class Materials {
+public:
+    Materials(std::string_view text, const std::string& name, const std::string& folder, const LoadOptions& options,
+              Diagnostics& diagnostics)
+        : text_(text), name_(name), folder_(folder), options_(options), diagnostics_(diagnostics) {}
+
+    Status load(const std::vector<obj::Library>& libraries) {
+        for (const obj::Library& library : libraries) {
+            // A name with blanks is often written as it is; so the whole rest of the line is tried first.
+            const std::vector<std::string> names = split_names(library.names);
+            if (names.size() > 1 && (options_.allow_outside_paths || !leaves_folder(library.names))) {
+                const std::string path = resolve_asset(library.names, folder_);
+                if (auto whole = read_file(path, options_.max_file_bytes)) {
+                    if (const Status done = load_file(std::string(library.names), library.offset, &*whole); !done)
+                        return done;
+                    continue;
+                }
+            }
+            for (const std::string& file : names)
+                if (const Status done = load_file(file, library.offset, nullptr); !done) return done;
+        }
+        return Ok{};
+    }
+
+    /// Index into `used`, which grows in order of first use; -1 with a warning when no library defines it.
+    int find(const obj::FaceList& list) {
+        const auto found = by_name_.find(list.material);
+        if (found == by_name_.end()) {
+            ++undefined_;
+            if (undefined_ <= kMaxNamed)
+                diagnostics_.warn(
+                    "material '" + escape_for_display(list.material, 100) + "' is not defined; the default is used",
+                    place(offset_of(list.material)));
+            else
+                diagnostics_.warn("other materials are not defined; the default is used",
+                                  place(offset_of(list.material)));
+            return -1;
+        }
+        used.push_back(found->second);
+        return static_cast<int>(used.size() - 1);
+    }
+
+    std::vector<MeshMaterial> used;
+
+private:
+    static constexpr size_t kMaxNamed = 32;
+
+    size_t offset_of(std::string_view part) const { return static_cast<size_t>(part.data() - text_.data()); }
+    SourceLocation place(size_t offset) const { return text_location(text_, name_, offset); }
+
+    Status load_file(const std::string& file, size_t offset, const std::string* content) {
+        const std::string path = resolve_asset(file, folder_);
+        if (!options_.allow_outside_paths && leaves_folder(file))
+            return text_error(text_, name_,
+                              {offset, "the material library lies outside of the model's folder",
+                               "move it there, or allow outside paths"});
+        if (!seen_.insert(path).second) return Ok{};
+        if (seen_.size() > kMaxLibraries)
+            return text_error(text_, name_,
+                              {offset,
+                               "more than " + std::to_string(kMaxLibraries) + " material libraries",
+                               {},
+                               ErrorCode::resources});
+        Result<std::string> data = content ? Result<std::string>(*content) : read_file(path, options_.max_file_bytes);
+        if (!data) {
+            diagnostics_.warn("material library '" + escape_for_display(file, 100) + "': " + data.error().message,
+                              place(offset));
+            return Ok{};
+        }
+        auto library = parse_mtl(*data, path, folder_of(path), options_);
+        if (!library) return std::move(library).error();
+        diagnostics_.append(library->diagnostics);
+        for (MeshMaterial& material : library->materials) {
+            std::string key = material.name;
+            by_name_.emplace(std::move(key), std::move(material));
+        }
+        return Ok{};
+    }
+
+    std::string_view text_;
+    const std::string& name_;
+    const std::string& folder_;
+    const LoadOptions& options_;
+    Diagnostics& diagnostics_;
+    std::map<std::string, MeshMaterial, std::less<>> by_name_;
+    std::set<std::string> seen_;
+    size_t undefined_ = 0;
+};
+
+MeshFile read_obj(std::string_view text, const std::string& name, const std::string& folder, const LoadOptions& options,
+                  std::optional<Error>& error) {
+    const obj::Records records = obj::read_records(text);
+    MeshFile file;
+    for (const auto& note : records.notes.all())
+        file.diagnostics.warn(describe(note.kind, note.word), text_location(text, name, note.offset), note.count);
+
+    obj::BuildCounts counts;
+    const std::vector<obj::FaceList> lists = obj::sort_faces(records, counts);
+    Materials materials(text, name, folder, options, file.diagnostics);
+    if (Status loaded = materials.load(records.libraries); !loaded) {
+        error = std::move(loaded).error();
+        return file;
+    }
+    std::vector<Mesh> meshes = obj::build_meshes(records, lists, counts);
+    for (size_t i = 0; i < lists.size(); ++i) {
+        const obj::FaceList& list = lists[i];
+        const int material = list.has_material ? materials.find(list) : -1;
+        file.parts.push_back(
+            {std::move(meshes[i]), material, std::string(list.has_material ? list.material : list.group)});
+    }
+    file.materials = std::move(materials.used);
+    if (counts.not_finite)
+        file.diagnostics.warn("faces with coordinates that are not finite were dropped", {name, 0, 0, {}},
+                              counts.not_finite);
+    if (counts.fans)
+        file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
+                              counts.fans);
+    return file;
+}
+
+}  // namespace
+
+Result<MeshFile> parse_obj(std::string_view text, const std::string& name, const std::string& folder,
+                           const LoadOptions& options) {
+    try {
+        std::optional<Error> error;
+        MeshFile file = read_obj(text, name, folder, options, error);
+        if (error) return std::move(*error);
+        return file;
+    } catch (const ParseFailure& failure) {
+        return text_error(text, name, failure);
+    } catch (const std::bad_alloc&) {
+        return out_of_memory(name);
+    }
+}
+
+}  // namespace steradian
