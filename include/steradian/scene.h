@@ -158,7 +158,7 @@ struct AreaLight {
 /// counter-clockwise seen from above.
 struct EnvironmentLight {
     Rgb radiance{1, 1, 1};
-    std::optional<ImageId> image;
+    std::optional<ImageId> image = std::nullopt;
     ColorSpace color_space = ColorSpace::linear;
     float rotation = 0;    ///< degrees
     uint32_t samples = 1;  ///< shadow rays per camera sample

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "render/film.h"
 #include "render/integrator.h"
@@ -21,16 +22,34 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.width, s.height}); }
+
 Error settings_error(std::string message) { return {ErrorCode::usage, std::move(message), {}, {}, {}}; }
+
+Status check_crop(const RenderSettings& s) {
+    if (!s.crop || (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height)) return Ok{};
+    return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels", s.crop->x0, s.crop->y0,
+                                      s.crop->x1, s.crop->y1, s.width, s.height));
+}
+
+/// The sums, and the picture made of them twice: as it is handed over, and as a file's encoder holds it.
+Status check_memory(const RenderSettings& s) {
+    const Crop window = window_of(s);
+    const uint64_t pixels = uint64_t(window.x1 - window.x0) * (window.y1 - window.y0);
+    const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float));
+    const uint64_t available = available_memory();
+    if (needed <= available) return Ok{};
+    return Error{ErrorCode::resources, fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20),
+                 {}, {}, "render it in parts with --crop"};
+}
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
     if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
     if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
         return Error{ErrorCode::resources, fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width,
                                                        s.height, kMaxResolution, kMaxPixels), {}, {}, {}};
-    if (s.crop && (s.crop->x0 >= s.crop->x1 || s.crop->y0 >= s.crop->y1 || s.crop->x1 > s.width || s.crop->y1 > s.height))
-        return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels", s.crop->x0,
-                                          s.crop->y0, s.crop->x1, s.crop->y1, s.width, s.height));
+    if (auto status = check_crop(s); !status) return status;
+    if (auto status = check_memory(s); !status) return status;
     if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
         return settings_error(fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
     if (!(s.filter.radius >= 0.01f && s.filter.radius <= 64))
@@ -46,7 +65,7 @@ class Job final : public RenderJob {
 public:
     Job(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings, const Execution& execution, CameraSampler camera)
         : scene_(std::move(scene)), settings_(settings), execution_(execution),
-          window_(settings.crop.value_or(Crop{0, 0, settings.width, settings.height})), film_(window_, execution.tile_size),
+          window_(window_of(settings)), film_(window_, execution.tile_size),
           context_{*scene_, settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed), cancelled_},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
 
