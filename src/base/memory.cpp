@@ -1,6 +1,7 @@
 #include "base/memory.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -38,7 +39,7 @@ uint64_t available_memory() noexcept {
         best = std::min(best, subtract(value, used));
     rlimit limit{};
     if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && read_number("/proc/self/statm", "", used))
-        best = std::min(best, subtract(limit.rlim_cur, used * 4096));
+        best = std::min(best, subtract(limit.rlim_cur, used * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE))));
     return best;
 }
 
