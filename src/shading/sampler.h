@@ -1,10 +1,10 @@
-// Where the random numbers come from. Every number is a pure function of (seed, absolute pixel, sample index, dimension);
-// there is no state. Two kinds: Owen-scrambled Sobol (default) and independent.
+// Where the random numbers come from. Every number is a pure function of (seed, absolute pixel, sample index,
+// dimension); there is no state. Two kinds: Owen-scrambled Sobol (default) and independent.
 //
-// The Sobol sampler is padded: dimensions 4g … 4g + 3 are the first four of the Sobol sequence, Owen-scrambled by hashing
-// (Laine & Karras 2011, Burley 2020 "Practical Hash-based Owen Scrambling"), with the sample index shuffled by another
-// nested uniform scramble per (pixel, g). So there is no highest dimension, and dimensions of different groups are
-// independent of each other.
+// The Sobol sampler is padded: dimensions 4g … 4g + 3 are the first four of the Sobol sequence, Owen-scrambled by
+// hashing (Laine & Karras 2011, Burley 2020 "Practical Hash-based Owen Scrambling"), with the sample index shuffled by
+// another nested uniform scramble per (pixel, g). So there is no highest dimension, and dimensions of different groups
+// are independent of each other.
 #pragma once
 
 #include <cstdint>
@@ -30,17 +30,13 @@ public:
     /// 32 uniform bits.
     uint32_t bits(const SampleKey& key, uint32_t dimension) const noexcept;
     /// In [0, 1), multiples of 2^-24.
-    float get_1d(const SampleKey& key, uint32_t dimension) const noexcept {
-        return static_cast<float>(bits(key, dimension) >> 8) * 0x1p-24f;
-    }
-    /// (dimension, dimension + 1). Keep both within one group of four: `dimension` even.
-    Vec2 get_2d(const SampleKey& key, uint32_t dimension) const noexcept {
-        const float u = get_1d(key, dimension);
-        const float v = get_1d(key, dimension + 1);
-        return {u, v};
-    }
+    float get_1d(const SampleKey& key, uint32_t dimension) const noexcept { return to_unit(bits(key, dimension)); }
+    /// get_1d of (dimension, dimension + 1), at less cost. Keep both within one group of four: `dimension` even.
+    Vec2 get_2d(const SampleKey& key, uint32_t dimension) const noexcept;
 
 private:
+    static float to_unit(uint32_t bits) noexcept { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
     SamplerKind kind_;
     uint64_t seed_;
 };
