@@ -18,7 +18,6 @@
 
 namespace steradian {
 
-
 struct SphereGeometry {
     Vec3 center;
     float radius = 1;
@@ -50,22 +49,24 @@ struct GeometryInstance {
 
 struct AccelOptions {
     BvhBuilder builder = BvhBuilder::sah;
-    uint32_t max_depth = 64;                 ///< 1 … 64 levels below a root; a leaf there takes whatever is left
-    std::function<bool()> cancelled;         ///< asked now and then during the build
+    uint32_t max_depth = 64;          ///< 1 … 64 levels below a root; a leaf there takes whatever is left
+    std::function<bool()> cancelled;  ///< asked now and then during the build, by one thread at a time
 };
 
 struct AccelStatistics {
     uint64_t primitives = 0, nodes = 0, leaves = 0;
-    uint32_t depth = 0;   ///< deepest leaf of any geometry
-    uint64_t bytes = 0;   ///< everything the Accel holds; the caller's arrays are not counted
+    uint32_t depth = 0;  ///< splits above the deepest leaf of any geometry
+    uint64_t bytes = 0;  ///< everything the Accel holds; the caller's arrays are not counted
     double build_seconds = 0;
 };
 
 class Accel {
 public:
-    /// Primitives with coordinates that are not finite or beyond kMaxCoordinate are refused (bad_input); zero-area ones
-    /// are fine and are never hit. A singular transform is refused. `resources` when memory runs out,
-    /// `render_failed` when cancelled.
+    /// Primitives with coordinates that are not finite or beyond kMaxCoordinate, or with a negative radius, are refused
+    /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
+    /// geometries that do not exist; a transform that is singular, scales beyond 1e±30 or leads beyond kMaxCoordinate.
+    /// `usage` for a max_depth out of range, `resources` when memory runs out or a geometry has more than 2^31 - 1
+    /// primitives, `render_failed` when cancelled. Uses the workers of the caller's arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
     Accel(Accel&&) noexcept;

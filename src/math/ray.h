@@ -12,8 +12,9 @@ inline constexpr float kMaxCoordinate = 1e15f;
 
 inline constexpr uint32_t kNoHit = 0xffffffffu;
 
-/// Points o + t d for t in [tmin, tmax]. A negative or NaN tmin counts as 0. d need not be unit length; a ray whose
-/// direction is zero, or with anything that is not finite (tmax may be infinite), hits nothing.
+/// Points o + t d for t in [tmin, tmax], both ends included. A negative or NaN tmin counts as 0; a NaN tmax means an
+/// empty range. d need not be unit length, but components smaller than the smallest normal float (1.2e-38) count as 0.
+/// A ray whose direction is zero, or with an origin or direction that is not finite, hits nothing.
 struct Ray {
     Vec3 o;
     float tmin = 0;

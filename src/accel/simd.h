@@ -1,0 +1,119 @@
+// Four floats at a time with the baseline instructions of each machine: IEEE operations only, so every lane computes
+// what the scalar expression computes. On other machines plain loops do the same.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace steradian {
+
+#if defined(__SSE2__)
+
+struct Float4 {
+    __m128 v;
+    static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
+    static Float4 all(float x) { return {_mm_set1_ps(x)}; }
+    void store(float* p) const { _mm_store_ps(p, v); }
+};
+struct Mask4 {
+    __m128 v;
+};
+inline Float4 operator+(Float4 a, Float4 b) { return {_mm_add_ps(a.v, b.v)}; }
+inline Float4 operator-(Float4 a, Float4 b) { return {_mm_sub_ps(a.v, b.v)}; }
+inline Float4 operator*(Float4 a, Float4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+/// a > b ? a : b and a < b ? a : b, also for NaN: b then.
+inline Float4 larger(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
+inline Float4 smaller(Float4 a, Float4 b) { return {_mm_min_ps(a.v, b.v)}; }
+inline Float4 abs(Float4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
+inline Mask4 operator<=(Float4 a, Float4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
+inline Mask4 operator<(Float4 a, Float4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
+inline Mask4 operator&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
+inline Mask4 operator|(Mask4 a, Mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
+/// Bit i for lane i.
+inline uint32_t bits(Mask4 m) { return static_cast<uint32_t>(_mm_movemask_ps(m.v)); }
+
+#elif defined(__aarch64__)
+
+struct Float4 {
+    float32x4_t v;
+    static Float4 load(const float* p) { return {vld1q_f32(p)}; }
+    static Float4 all(float x) { return {vdupq_n_f32(x)}; }
+    void store(float* p) const { vst1q_f32(p, v); }
+};
+struct Mask4 {
+    uint32x4_t v;
+};
+inline Float4 operator+(Float4 a, Float4 b) { return {vaddq_f32(a.v, b.v)}; }
+inline Float4 operator-(Float4 a, Float4 b) { return {vsubq_f32(a.v, b.v)}; }
+inline Float4 operator*(Float4 a, Float4 b) { return {vmulq_f32(a.v, b.v)}; }
+inline Float4 larger(Float4 a, Float4 b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
+inline Float4 smaller(Float4 a, Float4 b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
+inline Float4 abs(Float4 a) { return {vabsq_f32(a.v)}; }
+inline Mask4 operator<=(Float4 a, Float4 b) { return {vcleq_f32(a.v, b.v)}; }
+inline Mask4 operator<(Float4 a, Float4 b) { return {vcltq_f32(a.v, b.v)}; }
+inline Mask4 operator&(Mask4 a, Mask4 b) { return {vandq_u32(a.v, b.v)}; }
+inline Mask4 operator|(Mask4 a, Mask4 b) { return {vorrq_u32(a.v, b.v)}; }
+inline uint32_t bits(Mask4 m) {
+    static const uint32_t kLanes[4] = {1, 2, 4, 8};
+    return vaddvq_u32(vandq_u32(m.v, vld1q_u32(kLanes)));
+}
+
+#else
+
+struct Float4 {
+    float v[4];
+    static Float4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
+    static Float4 all(float x) { return {{x, x, x, x}}; }
+    void store(float* p) const {
+        for (int i = 0; i < 4; ++i) p[i] = v[i];
+    }
+};
+struct Mask4 {
+    uint32_t v;
+};
+template <class F>
+inline Float4 per_lane(Float4 a, Float4 b, F f) {
+    return {{f(a.v[0], b.v[0]), f(a.v[1], b.v[1]), f(a.v[2], b.v[2]), f(a.v[3], b.v[3])}};
+}
+template <class F>
+inline Mask4 mask_lanes(Float4 a, Float4 b, F f) {
+    uint32_t mask = 0;
+    for (int i = 0; i < 4; ++i) mask |= uint32_t(f(a.v[i], b.v[i])) << i;
+    return {mask};
+}
+inline Float4 operator+(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x + y; });
+}
+inline Float4 operator-(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x - y; });
+}
+inline Float4 operator*(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x * y; });
+}
+inline Float4 larger(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x > y ? x : y; });
+}
+inline Float4 smaller(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x < y ? x : y; });
+}
+inline Float4 abs(Float4 a) {
+    return per_lane(a, a, [](float x, float) { return __builtin_fabsf(x); });
+}
+inline Mask4 operator<=(Float4 a, Float4 b) {
+    return mask_lanes(a, b, [](float x, float y) { return x <= y; });
+}
+inline Mask4 operator<(Float4 a, Float4 b) {
+    return mask_lanes(a, b, [](float x, float y) { return x < y; });
+}
+inline Mask4 operator&(Mask4 a, Mask4 b) { return {a.v & b.v}; }
+inline Mask4 operator|(Mask4 a, Mask4 b) { return {a.v | b.v}; }
+inline uint32_t bits(Mask4 m) { return m.v; }
+
+#endif
+
+}  // namespace steradian
