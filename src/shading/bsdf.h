@@ -39,8 +39,8 @@ struct BsdfEval {
 
 struct BsdfSample {
     Vec3 wi;
-    Rgb weight;             ///< f · |cos θ_i| / pdf
-    float pdf = 0;          ///< 0 for specular lobes
+    Rgb weight;     ///< f · |cos θ_i| / pdf
+    float pdf = 0;  ///< 0 for specular lobes
     bool specular = false;
     bool transmitted = false;
 };

@@ -11,10 +11,10 @@
 namespace steradian {
 
 struct LightSample {
-    Vec3 wi;              ///< unit, from the point towards the light
-    Rgb radiance;         ///< incident radiance; for delta lights the irradiance on a surface that faces them
-    float pdf = 0;        ///< per solid angle; 0 marks a delta light, whose "pdf" is 1
-    Ray shadow_ray;       ///< unobstructed when occluded() says no
+    Vec3 wi;         ///< unit, from the point towards the light
+    Rgb radiance;    ///< incident radiance; for delta lights the irradiance on a surface that faces them
+    float pdf = 0;   ///< per solid angle; 0 marks a delta light, whose "pdf" is 1
+    Ray shadow_ray;  ///< unobstructed when occluded() says no
 };
 
 /// Number of shadow rays that light `light` wants per camera sample.
@@ -28,7 +28,8 @@ std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t ligh
 
 /// The density with which sample_light chooses wi, given that a ray from `from` along wi sees the light at `hit` (for
 /// the environment `hit` is null). 0 for delta lights.
-float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi, const SurfacePoint* hit) noexcept;
+float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi,
+                const SurfacePoint* hit) noexcept;
 
 /// Radiance that an area light on this surface sends towards wo; black where there is none.
 Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept;

@@ -1,12 +1,14 @@
 // What shading may see: the scene's data and the tables that are derived from it. Immutable once made.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "math/transform.h"
+#include "shading/light/emitter.h"
 #include "steradian/result.h"
 #include "steradian/scene.h"
 
@@ -22,15 +24,22 @@ struct ShadingScene {
     struct InstanceData {
         Affine object_from_world;
         bool identity = true;
-        bool flips = false;             ///< the transform mirrors: orientation by winding turns around
-        uint32_t area_light = kNoLight; ///< index into scene.lights
+        bool flips = false;              ///< the transform mirrors: orientation by winding turns around
+        uint32_t area_light = kNoLight;  ///< index into scene.lights
+        /// (|M| |M⁻¹|)² row by row, M the linear part of world_from_object: how much the rounding errors of going to
+        /// the object's space and back are magnified at most.
+        std::array<double, 9> round_trip{1, 0, 0, 0, 1, 0, 0, 0, 1};
     };
     std::vector<InstanceData> instances;
 
-    /// For area lights on meshes: cumulative world-space triangle areas, ascending by index; empty for other lights.
     struct LightData {
+        /// For area lights on meshes: cumulative world-space triangle areas, ascending by index; empty for other
+        /// lights.
         std::vector<double> cumulative_area;
-        double area = 0;                ///< world-space, of the whole light
+        double area = 0;                      ///< world-space, of the whole light; 0 for lights that are no area lights
+        Emitter emitter;                      ///< for area lights: the surface in world space
+        Vec3d direction;                      ///< for spots and directional lights: where they point, unit length
+        double cos_inner = 1, cos_outer = 1;  ///< for spots
     };
     std::vector<LightData> lights;
 
@@ -38,7 +47,8 @@ struct ShadingScene {
     std::shared_ptr<const EnvironmentTable> environment;
 };
 
-/// The scene must have passed validate() (scene/validate.h).
+/// The scene must have passed validate() (scene/validate.h). Fails with `resources` when memory runs out. Texels that
+/// are not finite (in environments also negative ones), which read as 0, are one counted warning per image.
 Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics);
 
 }  // namespace steradian

@@ -10,21 +10,36 @@ namespace steradian {
 struct ShadingScene;
 
 struct SurfacePoint {
-    Vec3 p;            ///< world, on the surface up to rounding
-    Vec3 p_error;      ///< |computed - exact| <= p_error, per coordinate; origins of new rays are offset by it
-    Vec3 ng;           ///< unit geometric normal: outside by the shape's own orientation, not flipped towards the ray
-    Vec3 ns;           ///< unit shading normal, on the same side as ng
+    Vec3 p;        ///< world, on the surface up to rounding
+    Vec3 p_error;  ///< |computed - exact| <= p_error, per coordinate; origins of new rays are offset by it
+    Vec3 ng;       ///< unit geometric normal: outside by the shape's own orientation, not flipped towards the ray
+    Vec3 ns;       ///< unit shading normal, on the same side as ng
     Vec2 uv;
     uint32_t instance = kNoHit;
     uint32_t prim = kNoHit;
 };
 
+/// `hit` must be of `ray`. uv of meshes without any are (hit.u, hit.v); of disks as of the rectangle around them.
+/// A mirroring transform does not turn a shape inside out: what was outside stays outside.
 SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hit) noexcept;
 
-/// p moved along ±n, to the side `direction` points to, beyond the error bound, rounded outwards.
+/// The same point with ng and ns turned to the side that wo points to: what is lit when it is seen from there.
+/// sample_light and pdf_light take it so (a constant environment is sampled about ns).
+SurfacePoint facing(SurfacePoint point, Vec3 wo) noexcept;
+
+/// The two axes of a disk, perpendicular to its normal and `radius` long: what (u, v) of a hit refers to. Rounded to
+/// float, they define the plane of the disk; whoever gives disks to the ray kernels must use these.
+struct DiskAxes {
+    Vec3 u, v;
+};
+DiskAxes disk_axes(const Disk& disk) noexcept;
+
+/// p moved along ±n, to the side `direction` points to, beyond the error bound, rounded outwards: strictly on that side
+/// of every plane with normal n through the box p ± p_error.
 Vec3 offset_origin(Vec3 p, Vec3 p_error, Vec3 n, Vec3 direction) noexcept;
 
-/// A ray that leaves the surface; it does not hit the surface it starts from.
+/// A ray that leaves the surface; it does not hit the surface it starts from. (ng itself is rounded to float, so a
+/// direction within about 1e-6 of the tangent plane may still be one that enters the exact surface.)
 Ray spawn_ray(const SurfacePoint& from, Vec3 direction) noexcept;
 
 }  // namespace steradian

@@ -10,6 +10,9 @@ namespace steradian {
 /// Values of float images that are not finite read as 0 (prepare counts them).
 Rgb texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) noexcept;
 
+/// How many texels of a float image have a colour value that is not finite (or, if asked, negative); 0 for others.
+uint64_t count_bad_texels(const RawImage& image, bool negative_too) noexcept;
+
 /// v runs downwards from the top row.
 Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
 

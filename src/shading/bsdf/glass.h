@@ -1,0 +1,29 @@
+// A smooth boundary between two dielectrics.
+#pragma once
+
+#include "shading/bsdf/specular.h"
+
+namespace steradian {
+
+inline GlassBsdf make_lobe(const GlassMaterial& material, const Scene&, const SurfacePoint&) {
+    return {material.eta, material.reflectance, material.transmittance};
+}
+
+inline bool lobe_is_specular(const GlassBsdf&) { return true; }
+
+inline BsdfEval eval_lobe(const GlassBsdf&, const LobeGeometry&, Vec3, Vec3) { return {}; }
+
+/// Reflects with the probability of the Fresnel reflectance, which thereby cancels. What is transmitted is scaled by
+/// (η_i/η_t)², i being the side of wo: radiance over the square of the index is what an interface conserves.
+inline std::optional<BsdfSample> sample_lobe(const GlassBsdf& lobe, const LobeGeometry& g, Vec3 wo, float uc, Vec2) {
+    const auto surface = Interface::seen_from(g, wo);
+    if (!surface) return std::nullopt;
+    const double eta = surface->outside ? lobe.eta : 1 / static_cast<double>(lobe.eta);
+    const double cos_o = min_of(dot(Vec3d(wo), surface->ns), 1.0);
+    if (uc >= fresnel_dielectric(static_cast<float>(cos_o), static_cast<float>(eta)))
+        if (const auto wi = surface->refracted(wo, eta))
+            return specular_sample(*wi, lobe.transmittance * static_cast<float>(1 / (eta * eta)), true);
+    return specular_sample(surface->reflected(wo), lobe.reflectance, false);
+}
+
+}  // namespace steradian

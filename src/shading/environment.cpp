@@ -1,0 +1,173 @@
+#include "shading/environment.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/parallel.h"
+#include "math/elementary.h"
+#include "math/transform.h"
+#include "shading/texture.h"
+
+namespace steradian {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+/// Texels as light: nothing below zero (texel() has already made 0 of what is not finite).
+Rgb light_texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) {
+    const Rgb c = texel(image, space, x, y);
+    return {max_of(c.r, 0.0f), max_of(c.g, 0.0f), max_of(c.b, 0.0f)};
+}
+
+/// What directions are chosen by: luminance, but never so little that a saturated blue is overlooked.
+double importance(Rgb c) { return max_of(static_cast<double>(luminance(c)), 0.05 * max_component(c)); }
+
+/// The mean over a texel of the interpolation between its own value and its neighbours'.
+double tent_mean(double before, double own, double after) { return 0.125 * before + 0.75 * own + 0.125 * after; }
+
+/// The index of the first cumulative value above x; values end with the total, x is below it.
+size_t find_interval(const double* begin, size_t count, double x) {
+    const double* at = std::upper_bound(begin, begin + count, x);
+    return min_of(static_cast<size_t>(at - begin), count - 1);
+}
+
+/// 24 uniform bits, refined by 16 more.
+double refine(float u, uint32_t bits16) { return static_cast<double>(u) + (bits16 + 0.5) * 0x1p-40; }
+
+}  // namespace
+
+std::shared_ptr<const EnvironmentTable> EnvironmentTable::make(const Scene& scene, const EnvironmentLight& light,
+                                                               Diagnostics& diagnostics) {
+    auto table = std::make_shared<EnvironmentTable>();
+    const Affine turn = rotation_degrees(light.rotation, {0, 1, 0});
+    table->cos_rotation_ = turn.m[0][0];
+    table->sin_rotation_ = turn.m[0][2];
+    table->scale_ = light.radiance;
+    table->image_ = light.image;
+    table->color_space_ = light.color_space;
+    table->empty_ = steradian::is_black(light.radiance);
+    if (!light.image) return table;
+
+    const RawImage& image = scene.images[index(*light.image)];
+    if (const uint64_t bad = count_bad_texels(image, /*negative_too=*/true); bad > 0)
+        diagnostics.warn("environment image: texels that are not finite or are negative count as 0", {}, bad);
+    table->tabulate(image);
+    return table;
+}
+
+void EnvironmentTable::tabulate(const RawImage& image) {
+    width_ = image.width;
+    height_ = image.height;
+    const size_t w = width_, h = height_;
+    cos_theta_.resize(h + 1);
+    for (size_t y = 0; y <= h; ++y)
+        cos_theta_[y] = math::cos(std::numbers::pi * static_cast<double>(y) / static_cast<double>(h));
+    cos_theta_[0] = 1;
+    cos_theta_[h] = -1;
+    cells_.resize(w * h);
+    rows_.resize(h);
+    parallel_for(h, 16, [&](size_t begin, size_t end) {
+        // Importance of the row above, the row itself and the row below, averaged along the row.
+        std::array<std::vector<double>, 3> window;
+        std::vector<double> raw(w);
+        const auto read_row = [&](size_t y, std::vector<double>& out) {
+            for (size_t x = 0; x < w; ++x)
+                raw[x] = importance(
+                    light_texel(image, color_space_, static_cast<uint32_t>(x), static_cast<uint32_t>(y)) * scale_);
+            out.resize(w);
+            for (size_t x = 0; x < w; ++x)
+                out[x] = tent_mean(raw[x > 0 ? x - 1 : w - 1], raw[x], raw[x + 1 < w ? x + 1 : 0]);
+        };
+        read_row(begin > 0 ? begin - 1 : 0, window[0]);
+        read_row(begin, window[1]);
+        for (size_t y = begin; y < end; ++y) {
+            read_row(y + 1 < h ? y + 1 : y, window[2]);
+            const double band = cos_theta_[y] - cos_theta_[y + 1];
+            double sum = 0;
+            for (size_t x = 0; x < w; ++x) {
+                sum += tent_mean(window[0][x], window[1][x], window[2][x]) * band;
+                cells_[y * w + x] = sum;
+            }
+            std::swap(window[0], window[1]);
+            std::swap(window[1], window[2]);
+        }
+    });
+    double total = 0;
+    for (size_t y = 0; y < h; ++y) {
+        total += cells_[y * w + w - 1];
+        rows_[y] = total;
+    }
+    // A total that is not finite or is vanishing cannot be divided by.
+    if (!(total > 1e-300) || !std::isfinite(total)) empty_ = true;
+}
+
+EnvironmentTable::MapPoint EnvironmentTable::map_point(Vec3 d) const noexcept {
+    // The map is turned by the rotation; the direction is turned back.
+    const double x = cos_rotation_ * d.x - sin_rotation_ * d.z;
+    const double z = sin_rotation_ * d.x + cos_rotation_ * d.z;
+    const double y = d.y;
+    const double s = 0.5 + math::atan2(x, -z) / kTwoPi;
+    const double t = math::atan2(std::sqrt(x * x + z * z), y) / std::numbers::pi;
+    return {clamp_to(s, 0.0, 1.0), clamp_to(t, 0.0, 1.0)};  // NaN becomes 0
+}
+
+Rgb EnvironmentTable::radiance(const Scene& scene, Vec3 d) const noexcept {
+    if (!image_) return scale_;
+    const RawImage& image = scene.images[index(*image_)];
+    const MapPoint at = map_point(d);
+    const double fx = at.s * image.width - 0.5, fy = at.t * image.height - 0.5;
+    const double x_floor = std::floor(fx), y_floor = std::floor(fy);
+    const auto w = static_cast<int64_t>(image.width), h = static_cast<int64_t>(image.height);
+    const auto x0 = static_cast<int64_t>(x_floor), y0 = static_cast<int64_t>(y_floor);
+    const auto wx = static_cast<float>(fx - x_floor), wy = static_cast<float>(fy - y_floor);
+    const auto read = [&](int64_t x, int64_t y) {
+        const int64_t column = x < 0 ? x + w : x >= w ? x - w : x;
+        return light_texel(image, color_space_, static_cast<uint32_t>(column),
+                           static_cast<uint32_t>(clamp_to<int64_t>(y, 0, h - 1)));
+    };
+    const Rgb upper = read(x0, y0) * (1 - wx) + read(x0 + 1, y0) * wx;
+    const Rgb lower = read(x0, y0 + 1) * (1 - wx) + read(x0 + 1, y0 + 1) * wx;
+    return (upper * (1 - wy) + lower * wy) * scale_;
+}
+
+double EnvironmentTable::cell_mass(uint32_t x, uint32_t y) const noexcept {
+    const double* row = cells_.data() + static_cast<size_t>(y) * width_;
+    return row[x] - (x > 0 ? row[x - 1] : 0.0);
+}
+
+EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u) const noexcept {
+    const double at_row = refine(u.y, choice >> 16) * rows_.back();
+    const auto y = static_cast<uint32_t>(find_interval(rows_.data(), height_, at_row));
+    const double in_row = at_row - (y > 0 ? rows_[y - 1] : 0.0);
+    const double* row = cells_.data() + static_cast<size_t>(y) * width_;
+    const double at_cell = refine(u.x, choice & 0xffffu) * row[width_ - 1];
+    const auto x = static_cast<uint32_t>(find_interval(row, width_, at_cell));
+    const double mass = cell_mass(x, y);
+    const double in_cell = at_cell - (x > 0 ? row[x - 1] : 0.0);
+
+    // What is left of both numbers is uniform within the cell: in the angle about +Y and in the height.
+    const double fx = clamp_to(in_cell / mass, 0.0, 1.0), fy = clamp_to(in_row / row_mass(y), 0.0, 1.0);
+    const double height = cos_theta_[y] + (cos_theta_[y + 1] - cos_theta_[y]) * fy;
+    const double phi = kTwoPi * ((x + fx) / width_ - 0.5);
+    const double radius = std::sqrt(max_of((1 - height) * (1 + height), 0.0));
+    const double mx = radius * math::sin(phi), mz = -radius * math::cos(phi);
+    EnvironmentSample out;
+    out.direction = normalize(static_cast<Vec3>(
+        Vec3d(cos_rotation_ * mx + sin_rotation_ * mz, height, cos_rotation_ * mz - sin_rotation_ * mx)));
+    out.pdf = cell_pdf(x, y);
+    return out;
+}
+
+double EnvironmentTable::cell_pdf(uint32_t x, uint32_t y) const noexcept {
+    const double band = cos_theta_[y] - cos_theta_[y + 1];
+    return cell_mass(x, y) / (rows_.back() * band) * (width_ / kTwoPi);
+}
+
+double EnvironmentTable::pdf(Vec3 d) const noexcept {
+    const MapPoint at = map_point(d);
+    const double x = clamp_to(std::floor(at.s * width_), 0.0, width_ - 1.0);
+    const double y = clamp_to(std::floor(at.t * height_), 0.0, height_ - 1.0);
+    return cell_pdf(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+}
+
+}  // namespace steradian

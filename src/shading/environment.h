@@ -1,0 +1,63 @@
+// The environment's radiance, and a distribution of directions that follows it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "math/vector.h"
+#include "steradian/result.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+
+struct EnvironmentSample {
+    Vec3 direction;  ///< unit, world
+    double pdf = 0;  ///< per solid angle
+};
+
+/// A latitude-longitude image is interpolated bilinearly between texel centres, wraps around at the sides and is
+/// continued at the poles. Directions are drawn by texel, with the probability of the texel's mean luminance times its
+/// solid angle, and uniformly within one: so wherever there is radiance there is density.
+/// Without an image the radiance is constant, and nothing is tabulated.
+class EnvironmentTable {
+public:
+    /// Refers to `light.image` by its id only; the functions below must be given the same scene data.
+    /// May throw std::bad_alloc.
+    static std::shared_ptr<const EnvironmentTable> make(const Scene& scene, const EnvironmentLight& light,
+                                                        Diagnostics& diagnostics);
+
+    bool is_constant() const noexcept { return !image_; }
+    /// There is nothing to sample: black everywhere, or not summable.
+    bool empty() const noexcept { return empty_; }
+
+    /// Along a ray of direction d (unit).
+    Rgb radiance(const Scene& scene, Vec3 d) const noexcept;
+
+    /// For images that are not empty() only. `choice` refines u below its 24 bits.
+    EnvironmentSample sample(uint32_t choice, Vec2 u) const noexcept;
+    double pdf(Vec3 d) const noexcept;
+
+private:
+    /// Position in the image from its top left corner, both in [0, 1]; (0, 0) for directions that are not numbers.
+    struct MapPoint {
+        double s = 0, t = 0;
+    };
+    MapPoint map_point(Vec3 d) const noexcept;
+    void tabulate(const RawImage& image);
+    double row_mass(uint32_t y) const noexcept { return rows_[y] - (y > 0 ? rows_[y - 1] : 0.0); }
+    double cell_mass(uint32_t x, uint32_t y) const noexcept;
+    double cell_pdf(uint32_t x, uint32_t y) const noexcept;
+
+    Rgb scale_;
+    std::optional<ImageId> image_;
+    ColorSpace color_space_ = ColorSpace::linear;
+    double cos_rotation_ = 1, sin_rotation_ = 0;
+    bool empty_ = false;
+    uint32_t width_ = 0, height_ = 0;
+    std::vector<double> rows_;       ///< cumulative over rows, of the last element of each row of cells_
+    std::vector<double> cells_;      ///< cumulative within each row
+    std::vector<double> cos_theta_;  ///< at the height_ + 1 borders between rows
+};
+
+}  // namespace steradian

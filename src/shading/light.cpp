@@ -1,0 +1,45 @@
+#include "shading/light.h"
+
+#include "shading/environment.h"
+#include "shading/light/area.h"
+#include "shading/light/directional.h"
+#include "shading/light/infinite.h"
+#include "shading/light/point.h"
+#include "shading/light/spot.h"
+#include "shading/shading_scene.h"
+
+namespace steradian {
+
+// A kind of light or emitter without its functions is a compile error in the visits below and in light/area.h.
+
+uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept {
+    return std::visit([](const auto& kind) { return samples_wanted(kind); }, scene.scene.lights[light]);
+}
+
+std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
+                                        uint32_t choice, Vec2 u) noexcept {
+    const LightContext context{scene, light};
+    return std::visit([&](const auto& kind) { return sample_kind(kind, context, from, choice, u); },
+                      scene.scene.lights[light]);
+}
+
+float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi,
+                const SurfacePoint* hit) noexcept {
+    const LightContext context{scene, light};
+    return static_cast<float>(std::visit([&](const auto& kind) { return pdf_kind(kind, context, from, wi, hit); },
+                                         scene.scene.lights[light]));
+}
+
+Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept {
+    const uint32_t light = scene.instances[point.instance].area_light;
+    if (light == kNoLight) return {};
+    const AreaLight& area = std::get<AreaLight>(scene.scene.lights[light]);
+    const float side = dot(wo, point.ng);
+    return side > 0 || (side < 0 && area.two_sided) ? area.radiance : Rgb{};
+}
+
+Rgb environment_radiance(const ShadingScene& scene, Vec3 d) noexcept {
+    return scene.environment ? scene.environment->radiance(scene.scene, d) : Rgb{};
+}
+
+}  // namespace steradian

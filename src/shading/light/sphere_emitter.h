@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+
+#include "math/transform.h"
+#include "shading/shading_scene.h"
+#include "shading/warp.h"
+
+namespace steradian {
+
+/// 1 - cos of the half angle of the cone that a sphere fills, seen from outside; exact for small spheres as well.
+inline double sphere_cone(const SphereEmitter& sphere, double distance) {
+    const double sine2 = (sphere.radius / distance) * (sphere.radius / distance);
+    const double cosine2 = (distance - sphere.radius) * (distance + sphere.radius) / (distance * distance);
+    return sine2 / (1 + std::sqrt(cosine2));
+}
+
+inline std::optional<EmitterSample> sample_emitter(const SphereEmitter& sphere, const EmitterContext& context,
+                                                   Vec3d from, uint32_t, Vec2 u) {
+    const Vec3d to_center = sphere.center - from;
+    const double distance = length(to_center), r = sphere.radius;
+    EmitterSample out;
+    out.p_error = sphere.p_error;
+    if (distance > r) {
+        const double cap = sphere_cone(sphere, distance);
+        const double below = cell_middle(u.x) * cap;  // 1 - cos of the chosen direction
+        const double sine2 = below * (2 - below);
+        const double phi = 2 * std::numbers::pi * cell_middle(u.y), sine = std::sqrt(sine2);
+        const Frame3d frame = Frame3d::from_z(to_center * (1 / distance));
+        const Vec3d direction = frame.to_world({sine * math::cos(phi), sine * math::sin(phi), 1 - below});
+        const double chord = std::sqrt(max_of(r * r - distance * distance * sine2, 0.0));
+        out.n = normalize(direction * (distance * (1 - below) - chord) - to_center);
+        out.pdf = 1 / (2 * std::numbers::pi * cap);
+    } else {
+        if (!context.two_sided) return std::nullopt;
+        const Vec3d direction = warp_sphere(u);
+        const double along = dot(direction, to_center);
+        const double chord = std::sqrt(max_of(r * r - distance * distance + along * along, 0.0));
+        out.n = normalize(direction * (along + chord) - to_center);
+        out.pdf = 1 / (4 * std::numbers::pi);
+    }
+    out.p = sphere.center + out.n * r;
+    return out;
+}
+
+inline double emitter_pdf(const SphereEmitter& sphere, const EmitterContext&, Vec3d from, Vec3d, Vec3d) {
+    const double distance = length(sphere.center - from);
+    if (!(distance > sphere.radius)) return 1 / (4 * std::numbers::pi);
+    return 1 / (2 * std::numbers::pi * sphere_cone(sphere, distance));
+}
+
+/// Area in the world per area on the object's sphere, at a point with unit outward normal n in the world.
+inline double area_magnification(const EllipsoidEmitter& e, Vec3d n) {
+    const auto& m = e.world_from_object.m;
+    const auto column = [&](size_t c) { return m[0][c] * n.x + m[1][c] * n.y + m[2][c] * n.z; };
+    return e.abs_determinant / length(Vec3d{column(0), column(1), column(2)});
+}
+
+inline double emitter_pdf(const EllipsoidEmitter& e, const EmitterContext&, Vec3d from, Vec3d p, Vec3d n) {
+    const double object_area = 4 * std::numbers::pi * e.radius * e.radius;
+    return solid_angle_pdf(1 / (object_area * area_magnification(e, n)), p - from, n);
+}
+
+inline std::optional<EmitterSample> sample_emitter(const EllipsoidEmitter& e, const EmitterContext& context, Vec3d from,
+                                                   uint32_t, Vec2 u) {
+    const Vec3d n = warp_sphere(u);
+    EmitterSample out;
+    out.p = transform_point(e.world_from_object, e.center + n * e.radius);
+    out.n = normalize(transform_normal_by_inverse(e.object_from_world, n));
+    out.p_error = e.p_error;
+    if (!emits_towards(out.p, out.n, from, context.two_sided)) return std::nullopt;
+    out.pdf = emitter_pdf(e, context, from, out.p, out.n);
+    return out;
+}
+
+}  // namespace steradian

@@ -1,0 +1,224 @@
+#include "shading/shading_scene.h"
+
+#include <new>
+
+#include "math/elementary.h"
+#include "shading/environment.h"
+#include "shading/light/mesh_emitter.h"
+#include "shading/light/sphere_emitter.h"
+#include "shading/surface.h"
+#include "shading/surface_error.h"
+#include "shading/texture.h"
+
+namespace steradian {
+namespace {
+
+ShadingScene::InstanceData instance_data(const Instance& instance) {
+    ShadingScene::InstanceData out;
+    const Affine& m = instance.world_from_object;
+    out.identity = is_identity(m);
+    if (out.identity) return out;
+    out.object_from_world = inverse(m).value_or(Affine{});  // validate() has refused singular transforms
+    out.flips = determinant(m) < 0;
+    double product[3][3] = {};
+    for (size_t r = 0; r < 3; ++r)
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t k = 0; k < 3; ++k)
+                product[r][c] += std::fabs(m.m[r][k]) * std::fabs(out.object_from_world.m[k][c]);
+    out.round_trip = {};
+    for (size_t r = 0; r < 3; ++r)
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t k = 0; k < 3; ++k) out.round_trip[3 * r + c] += product[r][k] * product[k][c];
+    return out;
+}
+
+/// Turns the surface of an area light into world space. The fields that the light's kind of shape needs are filled in.
+class EmitterBuilder {
+public:
+    EmitterBuilder(const ShadingScene& scene, InstanceId id, ShadingScene::LightData& out)
+        : scene_(scene),
+          id_(id),
+          instance_(scene.scene.instances[index(id)]),
+          data_(scene.instances[index(id)]),
+          transform_(instance_.world_from_object),
+          out_(out) {}
+
+    void operator()(MeshId id) {
+        const Mesh& mesh = scene_.scene.meshes[index(id)];
+        const auto triangles = static_cast<uint32_t>(mesh.indices.size() / 3);
+        out_.cumulative_area.reserve(triangles);
+        double total = 0;
+        for (uint32_t i = 0; i < triangles; ++i) {
+            const EmitterTriangle object = object_triangle(mesh, i);
+            const EmitterTriangle world = data_.identity ? object : world_triangle(transform_, object);
+            total += length(world.scaled_normal()) / 2;
+            out_.cumulative_area.push_back(total);
+        }
+        finish(MeshEmitter{id_, id}, total);
+    }
+
+    void operator()(const Sphere& sphere) {
+        const Vec3d center = sphere.center;
+        const double r = sphere.radius;
+        const double slack = sphere_slack(r, max_component(abs(center)) + r);
+        const Vec3 p_error = error_within(center, {r, r, r}, slack);
+        if (const std::optional<double> scale = uniform_scale(transform_)) {
+            const double radius = *scale * r;
+            finish(SphereEmitter{to_world(center), radius, p_error}, 4 * std::numbers::pi * radius * radius);
+            return;
+        }
+        const EllipsoidEmitter e{transform_, data_.object_from_world, center, r, std::fabs(determinant(transform_)),
+                                 p_error};
+        finish(e, ellipsoid_area(e));
+    }
+
+    void operator()(const Rectangle& r) {
+        const Flat flat = flat_shape(r.center, r.half_u, r.half_v);
+        const double lu = length(flat.u), lv = length(flat.v);
+        // Half a unit in the last place of a float in the direction of either side is nothing to care about.
+        const bool right_angled = std::fabs(dot(flat.u, flat.v)) <= 1e-6 * lu * lv;
+        const double area = 4 * flat.spanned;
+        finish(RectangleEmitter{flat.center, flat.u, flat.v, flat.normal, area, right_angled, flat.p_error}, area);
+    }
+
+    void operator()(const Disk& disk) {
+        const DiskAxes axes = disk_axes(disk);
+        const Flat flat = flat_shape(disk.center, axes.u, axes.v);
+        const double area = std::numbers::pi * flat.spanned;
+        finish(DiskEmitter{flat.center, flat.u, flat.v, flat.normal, area, flat.p_error}, area);
+    }
+
+private:
+    struct Flat {
+        Vec3d center, u, v, normal;
+        double spanned = 0;  ///< |u × v|
+        Vec3 p_error;
+    };
+
+    Vec3d to_world(Vec3d p) const { return data_.identity ? p : transform_point(transform_, p); }
+
+    /// Bounds surface_error for all points of a shape that lies within center ± extent.
+    Vec3 error_within(Vec3d center, Vec3d extent, double slack) const {
+        const Vec3d object = abs(center) + extent;
+        const Vec3d world = abs(to_world(center));
+        Vec3d world_extent = extent;
+        if (!data_.identity) {
+            Affine magnitude;
+            for (size_t r = 0; r < 3; ++r)
+                for (size_t c = 0; c < 3; ++c) magnitude.m[r][c] = std::fabs(transform_.m[r][c]);
+            world_extent = transform_vector(magnitude, extent);
+        }
+        return surface_error(transform_, data_, object, world + world_extent, slack);
+    }
+
+    Flat flat_shape(Vec3d center, Vec3d u, Vec3d v) const {
+        const double size = 2 * (length(u) + length(v));
+        const double slack = flat_slack(size, max_component(abs(center)) + size, 4 * length(cross(u, v)));
+        Flat out;
+        out.p_error = error_within(center, abs(u) + abs(v), slack);
+        out.center = to_world(center);
+        out.u = data_.identity ? u : transform_vector(transform_, u);
+        out.v = data_.identity ? v : transform_vector(transform_, v);
+        const Vec3d n = cross(out.u, out.v) * (data_.flips ? -1.0 : 1.0);
+        out.spanned = length(n);
+        out.normal = normalize(n);
+        return out;
+    }
+
+    /// By the midpoint rule over the object's sphere: area is for statistics and light choice, not for densities.
+    static double ellipsoid_area(const EllipsoidEmitter& e) {
+        constexpr int kRings = 64, kSectors = 128;
+        double sum = 0;
+        for (int ring = 0; ring < kRings; ++ring) {
+            const double z = (2 * ring + 1.0) / kRings - 1, r = std::sqrt((1 - z) * (1 + z));
+            for (int sector = 0; sector < kSectors; ++sector) {
+                const double phi = 2 * std::numbers::pi * (sector + 0.5) / kSectors;
+                const Vec3d n{r * math::cos(phi), r * math::sin(phi), z};
+                sum += e.abs_determinant * length(transform_normal_by_inverse(e.object_from_world, n));
+            }
+        }
+        return 4 * std::numbers::pi * e.radius * e.radius * sum / (kRings * kSectors);
+    }
+
+    /// A light without area, or with one that is not a number, has nothing to sample.
+    void finish(Emitter emitter, double area) {
+        if (!(area > 0) || !std::isfinite(area)) return;
+        out_.area = area;
+        out_.emitter = std::move(emitter);
+    }
+
+    const ShadingScene& scene_;
+    InstanceId id_;
+    const Instance& instance_;
+    const ShadingScene::InstanceData& data_;
+    const Affine& transform_;
+    ShadingScene::LightData& out_;
+};
+
+/// Adds what one light needs; one overload per kind.
+class LightBuilder {
+public:
+    LightBuilder(ShadingScene& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
+
+    void add(const Light& light) {
+        scene_.lights.emplace_back();
+        std::visit(*this, light);
+    }
+
+    void operator()(const PointLight&) {}
+    void operator()(const SpotLight& light) {
+        constexpr double kRadians = std::numbers::pi / 180;
+        data().direction = normalize(Vec3d(light.direction));
+        data().cos_inner = math::cos(light.inner_angle * kRadians);
+        data().cos_outer = math::cos(light.outer_angle * kRadians);
+    }
+    void operator()(const DirectionalLight& light) { data().direction = normalize(Vec3d(light.direction)); }
+    void operator()(const AreaLight& light) {
+        scene_.instances[index(light.instance)].area_light = current();
+        const ShapeId shape = scene_.scene.instances[index(light.instance)].shape;
+        std::visit(EmitterBuilder(scene_, light.instance, data()), scene_.scene.shapes[index(shape)]);
+    }
+    void operator()(const EnvironmentLight& light) {
+        scene_.environment_light = current();
+        scene_.environment = EnvironmentTable::make(scene_.scene, light, diagnostics_);
+    }
+
+private:
+    uint32_t current() const { return static_cast<uint32_t>(scene_.lights.size() - 1); }
+    ShadingScene::LightData& data() { return scene_.lights.back(); }
+
+    ShadingScene& scene_;
+    Diagnostics& diagnostics_;
+};
+
+/// Image textures only: the environment counts its own.
+void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
+    std::vector<bool> counted(scene.images.size(), false);
+    for (const Texture& texture : scene.textures) {
+        const auto* image = std::get_if<ImageTexture>(&texture);
+        if (!image || counted[index(image->image)]) continue;
+        counted[index(image->image)] = true;
+        if (const uint64_t bad = count_bad_texels(scene.images[index(image->image)], false); bad > 0)
+            diagnostics.warn("image texture: texels that are not finite count as 0", {}, bad);
+    }
+}
+
+}  // namespace
+
+Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
+    try {
+        ShadingScene out;
+        out.scene = std::move(scene);
+        out.instances.reserve(out.scene.instances.size());
+        for (const Instance& instance : out.scene.instances) out.instances.push_back(instance_data(instance));
+        out.lights.reserve(out.scene.lights.size());
+        LightBuilder lights(out, diagnostics);
+        for (const Light& light : out.scene.lights) lights.add(light);
+        warn_about_texels(out.scene, diagnostics);
+        return out;
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::resources, "not enough memory for the light tables of the scene", {}, {}, {}};
+    }
+}
+
+}  // namespace steradian
