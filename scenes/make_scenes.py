@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""Makes the scenes of this folder: run it here after a change, and commit what it writes.
+
+Needs nothing but Python. The sky is written as Radiance HDR, the knot as binary PLY.
+"""
+import json
+import math
+import struct
+
+ROOM = {"left": [0.63, 0.065, 0.05], "right": [0.14, 0.45, 0.091], "rest": [0.725, 0.71, 0.68]}
+CAMERA = {"position": [0, 1, 6.8], "look_at": [0, 1, 0], "up": [0, 1, 0], "vertical_fov": 19.5}
+
+# A unit box whose left front bottom corner is the origin: x in [0, 1], y in [0, 1], z in [-1, 0], normals outwards.
+BOX = {
+    "type": "mesh",
+    "vertices": [[0, 0, 0], [1, 0, 0], [1, 0, -1], [0, 0, -1], [0, 1, 0], [1, 1, 0], [1, 1, -1], [0, 1, -1]],
+    "triangles": [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4],
+                  [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]],
+}
+
+
+def dump(path, scene):
+    """JSON with one line for each array of numbers and for each small object, so that people can read it."""
+    def text(value, indent):
+        flat = json.dumps(value)
+        if not isinstance(value, (dict, list)) or (len(flat) <= 100 and indent > 0):
+            return flat
+        pad = "  " * (indent + 1)
+        if isinstance(value, dict):
+            rows = [pad + json.dumps(k) + ": " + text(v, indent + 1) for k, v in value.items()]
+            return "{\n" + ",\n".join(rows) + "\n" + "  " * indent + "}"
+        rows = [pad + text(v, indent + 1) for v in value]
+        return "[\n" + ",\n".join(rows) + "\n" + "  " * indent + "]"
+
+    with open(path, "w") as f:
+        f.write(text(scene, 0) + "\n")
+
+
+def wall(center, half_u, half_v, material):
+    return {"type": "rectangle", "center": center, "half_u": half_u, "half_v": half_v, "material": material}
+
+
+def room(comment, **more):
+    scene = {
+        "$schema": "../docs/scene.schema.json",
+        "version": 1,
+        "comment": comment,
+        "render": {"integrator": "direct", "max_depth": 16, "spp": 64},
+        "film": {"resolution": [512, 512]},
+        "camera": CAMERA,
+        "materials": {name: {"type": "diffuse", "reflectance": color} for name, color in ROOM.items()},
+        "shapes": {"box": BOX},
+        "objects": [
+            wall([-1, 1, 0], [0, 0, -1], [0, 1, 0], "left"),
+            wall([1, 1, 0], [0, 0, 1], [0, 1, 0], "right"),
+            wall([0, 0, 0], [1, 0, 0], [0, 0, -1], "rest"),
+            wall([0, 2, 0], [1, 0, 0], [0, 0, 1], "rest"),
+            wall([0, 1, -1], [1, 0, 0], [0, 1, 0], "rest"),
+            {"type": "instance", "shape": "box", "material": "rest", "transform": [
+                {"scale": [0.6, 0.6, 0.6]},
+                {"rotate": {"axis": [0, 1, 0], "angle": 17}},
+                {"translate": [-0.7, 0, 0.6]}]},
+            {"type": "instance", "shape": "box", "material": "rest", "transform": [
+                {"translate": [-1, 0, 1]},
+                {"scale": [0.6, 1.2, 0.6]},
+                {"rotate": {"axis": [0, 1, 0], "angle": -19}},
+                {"translate": [0.7, 0, -0.5]}]},
+        ],
+    }
+    for key, value in more.items():
+        if isinstance(value, dict):
+            scene[key].update(value)
+        elif key in scene:
+            scene[key] += value
+        else:
+            scene[key] = value
+    return scene
+
+
+POINT_LIGHT = {"type": "point", "position": [0, 1.5, 0.5], "flux": [17, 12, 5]}
+
+
+def cornell():
+    dump("cornell_point.json", room("Boxes under one point light.", lights=[POINT_LIGHT]))
+    dump("cornell_refraction.json", room(
+        "Boxes under one point light, behind a ball that refracts with a relative index of 2.",
+        materials={"refractor": {"type": "refraction", "eta": 2}},
+        objects=[{"type": "sphere", "center": [0, 1, 1], "radius": 0.4, "material": "refractor"}],
+        lights=[POINT_LIGHT]))
+    dump("cornell_area.json", room(
+        "Boxes under a square lamp: soft shadows.",
+        materials={"black": {"type": "diffuse", "reflectance": [0, 0, 0]}},
+        objects=[{"type": "rectangle", "name": "lamp", "center": [0, 1.98, 0], "half_u": [0.25, 0, 0], "half_v": [0, 0, 0.25],
+                  "material": "black", "light": {"radiance": [17, 12, 5], "light_samples": 4}}]))
+
+
+def spheres():
+    def scene(comment, color, light):
+        return {
+            "$schema": "../docs/scene.schema.json", "version": 1, "comment": comment,
+            "render": {"integrator": "direct", "spp": 64},
+            "film": {"resolution": [256, 256]},
+            "camera": CAMERA,
+            "materials": {"white": {"type": "diffuse", "reflectance": color}},
+            "objects": [{"type": "sphere", "center": [0, 1, 0], "radius": 1, "material": "white"}],
+            "lights": [light],
+        }
+
+    dump("furnace_sphere.json", scene("A white sphere in a white environment: every pixel is 1.", [1, 1, 1],
+                                      {"type": "environment", "radiance": [1, 1, 1]}))
+    dump("sun_sphere.json", scene("A white sphere under a sky with a sun.", [0.8, 0.8, 0.8],
+                                  {"type": "environment", "path": "sun_sky.hdr", "rotation": -60, "light_samples": 4}))
+
+
+def sun_sky():
+    """A clear sky by a simple gradient, brighter towards the sun and the horizon; the ground is a dull brown."""
+    width, height = 256, 128
+    elevation = math.radians(38)
+    sun = (0.0, math.sin(elevation), -math.cos(elevation))  # in the map's centre column
+    rows = bytearray()
+    for y in range(height):
+        theta = math.pi * (y + 0.5) / height
+        for x in range(width):
+            phi = 2 * math.pi * ((x + 0.5) / width - 0.5)  # 0: -Z, a quarter turn to the right: +X
+            d = (math.sin(theta) * math.sin(phi), math.cos(theta), -math.sin(theta) * math.cos(phi))
+            cosine = sum(a * b for a, b in zip(d, sun))
+            if d[1] >= 0:
+                haze = (1 - d[1]) ** 4
+                glow = 0.9 * max(cosine, 0) ** 12
+                color = [a + (b - a) * haze + g * glow
+                         for a, b, g in zip((0.16, 0.33, 0.75), (0.75, 0.85, 1.0), (1.0, 0.85, 0.6))]
+                if cosine > math.cos(math.radians(1.6)):
+                    color = [1400, 1250, 1000]
+            else:
+                color = [0.18, 0.16, 0.13]
+            rows += rgbe(color)
+    with open("sun_sky.hdr", "wb") as f:
+        f.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width))
+        for y in range(height):
+            f.write(bytes([2, 2, width >> 8, width & 255]))
+            row = rows[y * width * 4:(y + 1) * width * 4]
+            for c in range(4):
+                f.write(run_lengths(row[c::4]))
+
+
+def rgbe(color):
+    largest = max(color)
+    mantissa, exponent = math.frexp(largest)
+    scale = mantissa * 256 / largest
+    return bytes([int(c * scale) for c in color] + [exponent + 128])
+
+
+def run_lengths(values):
+    out, i = bytearray(), 0
+    while i < len(values):
+        run = 1
+        while run < 127 and i + run < len(values) and values[i + run] == values[i]:
+            run += 1
+        if run >= 4:
+            out += bytes([128 + run, values[i]])
+            i += run
+            continue
+        start = i
+        while i < len(values) and i - start < 128 and not (
+                i + 3 < len(values) and values[i] == values[i + 1] == values[i + 2] == values[i + 3]):
+            i += 1
+        out += bytes([i - start]) + bytes(values[start:i])
+    return bytes(out)
+
+
+def knot(path, segments=256, sides=24, radius=0.17):
+    """A (2, 3) torus knot, lying flat around the y axis, about 1 m across."""
+    def center(t):
+        r = 0.42 * (2 + math.cos(3 * t)) / 2
+        return [r * math.cos(2 * t), 0.42 * math.sin(3 * t) / 1.6, r * math.sin(2 * t)]
+
+    def sub(a, b): return [x - y for x, y in zip(a, b)]
+    def cross(a, b): return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+    def unit(a):
+        length = math.sqrt(sum(x * x for x in a))
+        return [x / length for x in a]
+
+    vertices = []
+    for i in range(segments):
+        t = 2 * math.pi * i / segments
+        h = 1e-3
+        tangent = unit(sub(center(t + h), center(t - h)))
+        # Frenet frame: it turns smoothly and closes, because the curve has no straight part.
+        bend = sub([a + b for a, b in zip(center(t + h), center(t - h))], [2 * c for c in center(t)])
+        binormal = unit(cross(tangent, bend))
+        normal = cross(binormal, tangent)
+        for j in range(sides):
+            a = 2 * math.pi * j / sides
+            n = [math.cos(a) * u + math.sin(a) * v for u, v in zip(normal, binormal)]
+            vertices.append([c + radius * x for c, x in zip(center(t), n)] + n)
+    faces = []
+    for i in range(segments):
+        for j in range(sides):
+            a, b = i * sides + j, i * sides + (j + 1) % sides
+            c, d = ((i + 1) % segments) * sides + (j + 1) % sides, ((i + 1) % segments) * sides + j
+            faces += [[a, b, c], [a, c, d]]
+    # Outwards: the first face's normal must agree with its vertices' normals.
+    p = [v[:3] for v in vertices]
+    n = cross(sub(p[faces[0][1]], p[faces[0][0]]), sub(p[faces[0][2]], p[faces[0][0]]))
+    if sum(x * y for x, y in zip(n, vertices[faces[0][0]][3:])) < 0:
+        faces = [[a, c, b] for a, b, c in faces]
+    with open(path, "wb") as f:
+        f.write((f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
+                 + "".join(f"property float {k}\n" for k in ("x", "y", "z", "nx", "ny", "nz"))
+                 + f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n").encode())
+        for v in vertices:
+            f.write(struct.pack("<6f", *v))
+        for face in faces:
+            f.write(struct.pack("<B3i", 3, *face))
+
+
+def hero():
+    """A golden knot, glass and mirror balls and a winding stair of one shared box, under the sky with a sun."""
+    colors = {"clay": [0.62, 0.22, 0.12], "sand": [0.75, 0.6, 0.4], "moss": [0.25, 0.4, 0.16],
+              "sea": [0.1, 0.3, 0.5], "plum": [0.35, 0.12, 0.3]}
+    objects = [
+        {"type": "rectangle", "center": [0, 0, 0], "half_u": [14, 0, 0], "half_v": [0, 0, -14], "material": "floor"},
+        {"type": "mesh", "path": "knot.ply", "material": "gold",
+         "transform": [{"rotate": {"axis": [1, 0, 0], "angle": 62}}, {"rotate": {"axis": [0, 1, 0], "angle": -20}},
+                       {"translate": [0, 0.86, 0]}]},
+        {"type": "sphere", "center": [-1.15, 0.45, 0.75], "radius": 0.45, "material": "glass"},
+        {"type": "sphere", "center": [1.2, 0.38, 0.7], "radius": 0.38, "material": "mirror"},
+        {"type": "sphere", "center": [0.35, 0.16, 1.35], "radius": 0.16, "material": "clay"},
+        {"type": "sphere", "center": [-0.3, 0.12, 1.5], "radius": 0.12, "material": "sea"},
+        {"type": "sphere", "center": [0.05, 0.1, 1.75], "radius": 0.1, "material": "moss"},
+    ]
+    names = list(colors)
+    for i in range(40):
+        angle = 9 * i - 35
+        objects.append({"type": "instance", "shape": "box", "material": names[i % len(names)], "transform": [
+            {"translate": [-0.5, 0, 0.5]}, {"scale": [0.55, 0.12 + 0.055 * i, 0.3]}, {"translate": [0, 0, -2.2]},
+            {"rotate": {"axis": [0, 1, 0], "angle": angle}}]})
+    dump("hero.json", {
+        "$schema": "../docs/scene.schema.json", "version": 1,
+        "comment": "What the program can do: instances, a mesh, glass, mirrors, textures, a sky with a sun.",
+        "render": {"integrator": "direct", "max_depth": 12, "spp": 256},
+        "film": {"resolution": [960, 540]},
+        "camera": {"position": [0, 1.55, 5.6], "look_at": [0, 0.72, 0], "vertical_fov": 30},
+        "textures": {"tiles": {"type": "checkerboard", "color0": [0.72, 0.7, 0.66], "color1": [0.22, 0.24, 0.27], "scale": [40, 40]}},
+        "materials": {
+            "floor": {"type": "diffuse", "reflectance": "tiles"},
+            "gold": {"type": "mirror", "reflectance": [1.0, 0.76, 0.33]},
+            "mirror": {"type": "mirror", "reflectance": [0.92, 0.93, 0.94]},
+            "glass": {"type": "glass", "eta": 1.5},
+            **{name: {"type": "diffuse", "reflectance": color} for name, color in colors.items()},
+        },
+        "shapes": {"box": BOX},
+        "objects": objects,
+        "lights": [{"type": "environment", "path": "sun_sky.hdr", "rotation": 125, "light_samples": 2}],
+    })
+
+
+if __name__ == "__main__":
+    cornell()
+    spheres()
+    sun_sky()
+    knot("knot.ply")
+    hero()
