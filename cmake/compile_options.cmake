@@ -20,3 +20,8 @@ if(STERADIAN_SANITIZE)
   endforeach()
   add_compile_options(-fno-omit-frame-pointer -fno-sanitize-recover=all)
 endif()
+
+if(STERADIAN_BUILD_FUZZ)
+  # The libraries tell the fuzzer which of their branches an input reached.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

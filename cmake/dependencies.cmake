@@ -5,5 +5,6 @@ find_package(OpenEXR 3 CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(fmt REQUIRED)
-find_package(RapidJSON REQUIRED)
+# Headers only. RapidJSON's own CMake package names the folder without regard to a sysroot.
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+find_path(RapidJSON_INCLUDE_DIRS rapidjson/rapidjson.h REQUIRED)

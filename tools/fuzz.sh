@@ -12,20 +12,19 @@ seconds=${1:-20}
 artifacts=build/fuzz/artifacts
 mkdir -p "$artifacts"
 count=0 failed=0
-for target in build/fuzz/fuzz/fuzz_*; do
-    [ -f "$target" ] && [ -x "$target" ] || continue
+while IFS= read -r target; do
     name=${target##*/fuzz_}
     corpus=fuzz/corpus/$name
     [ -d "$corpus" ] || { echo "$name: no corpus in $corpus" && failed=1 && continue; }
     count=$((count + 1))
     echo "== $name"
-    "$target" -runs=0 -artifact_prefix="$artifacts/$name-" "$corpus" || failed=1
+    "$target" -runs=0 -artifact_prefix="$artifacts/$name-" "$corpus" </dev/null || failed=1
     [ "$seconds" -eq 0 ] && continue
     # New inputs go into a folder of their own; the committed corpus stays as it is.
     found=build/fuzz/found/$name
     mkdir -p "$found"
     "$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$artifacts/$name-" \
-        "$found" "$corpus" || failed=1
-done
+        "$found" "$corpus" </dev/null || failed=1
+done < <(find build/fuzz/fuzz -type f -name 'fuzz_*' -executable | sort)
 echo "$count fuzz targets"
 [ "$count" -gt 0 ] && [ "$failed" -eq 0 ]
