@@ -1,0 +1,233 @@
+#include "formats/assets.h"
+
+#include <cctype>
+#include <filesystem>
+#include <system_error>
+
+#include "base/text.h"
+#include "image/decode.h"
+#include "math/vector.h"
+
+namespace steradian {
+namespace {
+
+/// About a file as a whole: without a line.
+Error path_error(std::string message, std::string hint = {}) {
+    return {ErrorCode::bad_input, std::move(message), {}, {}, std::move(hint)};
+}
+
+/// "http://…", "file:…": a scheme of at least two letters, so that a drive letter is not one.
+bool has_scheme(std::string_view path) {
+    const size_t colon = path.find(':');
+    if (colon == path.npos || colon < 2) return false;
+    for (const char c : path.substr(0, colon)) {
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        if (!letter && !(c >= '0' && c <= '9') && c != '+' && c != '-' && c != '.') return false;
+    }
+    return path.substr(colon + 1).starts_with("//") || iequals(path.substr(0, colon), "file") ||
+           iequals(path.substr(0, colon), "data");
+}
+
+Error address_error(std::string_view named) {
+    return path_error("'" + escape_for_display(named) + "' is an address, expected a path: nothing is fetched");
+}
+
+/// Two names of one file share what was read.
+std::string identity(const std::string& path) {
+    std::error_code error;
+    const auto canonical = std::filesystem::weakly_canonical(path, error);
+    return error ? path : canonical.string();
+}
+
+float usable_ior(float ior, Diagnostics& diagnostics, const std::string& file_material) {
+    if (is_finite(ior) && ior >= 1e-3f && ior <= 1e3f) return ior;
+    diagnostics.warn("material '" + escape_for_display(file_material, 60) +
+                     "': the index of refraction (Ni) makes no sense, 1.5 is used");
+    return 1.5f;
+}
+
+}  // namespace
+
+Status Assets::check_inside(const std::string& path) const {
+    std::error_code error;
+    const auto root = std::filesystem::weakly_canonical(base_folder_.empty() ? "." : base_folder_, error);
+    const auto target = std::filesystem::weakly_canonical(path, error);
+    const auto relative = target.lexically_relative(root);
+    if (error || relative.empty() || *relative.begin() == "..")
+        return path_error("the path '" + escape_for_display(path) + "' leaves the scene's folder",
+                          "paths outside it are not allowed here");
+    return Ok{};
+}
+
+Result<std::string> Assets::resolve(std::string_view named) const {
+    if (named.empty()) return path_error("the path is empty, expected the name of a file");
+    if (named.find('\0') != named.npos) return path_error("a path cannot contain a NUL character");
+    if (has_scheme(named)) return address_error(named);
+    std::string path(named);
+    if (named.front() != '/' && !base_folder_.empty())
+        path = base_folder_ + (base_folder_.back() == '/' ? "" : "/") + path;
+    if (!options_.allow_outside_paths) {
+        if (named.front() == '/')
+            return path_error("the path '" + escape_for_display(named) + "' is absolute",
+                              "paths outside the scene's folder are not allowed here");
+        if (auto inside = check_inside(path); !inside) return std::move(inside).error();
+    }
+    return path;
+}
+
+Result<ImageId> Assets::image(std::string_view named) {
+    auto path = resolve(named);
+    if (!path) return std::move(path).error();
+    return open_image(*path);
+}
+
+Result<ImageId> Assets::open_image(const std::string& path) {
+    const std::string key = identity(path);
+    if (const auto known = images_.find(key); known != images_.end()) return known->second;
+    auto texels = read_texels(path, options_.images);
+    if (!texels) return std::move(texels).error();
+    const ImageId id = add<ImageId>(loaded_.scene.images, std::move(*texels));
+    loaded_.scene.names.images.push_back(path);
+    images_.emplace(key, id);
+    return id;
+}
+
+ColorSpace Assets::default_color_space(ImageId image) const {
+    const TexelFormat format = loaded_.scene.images[index(image)].format;
+    return format == TexelFormat::u8 || format == TexelFormat::u16 ? ColorSpace::srgb : ColorSpace::linear;
+}
+
+Result<size_t> Assets::load_model(std::string_view named) {
+    auto path = resolve(named);
+    if (!path) return std::move(path).error();
+    const std::string key = identity(*path);
+    if (const auto known = model_index_.find(key); known != model_index_.end()) return known->second;
+    auto file = load_mesh_file(*path, options_);
+    if (!file) return std::move(file).error();
+    loaded_.diagnostics.append(file->diagnostics);
+    if (file->parts.empty()) loaded_.diagnostics.warn("the model has no faces", {*path, 0, 0, {}});
+    Model model;
+    for (MeshPart& part : file->parts) {
+        const MeshId mesh = add_mesh(std::move(part.mesh), part.name.empty() ? std::string(named) : part.name);
+        model.parts.push_back({add_shape(mesh, part.name), part.material, part.name});
+    }
+    model.materials = std::move(file->materials);
+    model.made.resize(model.materials.size());
+    models_.push_back(std::move(model));
+    model_index_.emplace(key, models_.size() - 1);
+    return models_.size() - 1;
+}
+
+Result<InstanceRange> Assets::place(size_t model_number, const Placement& placement) {
+    Model& model = models_[model_number];
+    InstanceRange range{static_cast<uint32_t>(loaded_.scene.instances.size()), 0};
+    for (const Model::Part& part : model.parts) {
+        MaterialId material{};
+        const bool from_file = !placement.material && part.material >= 0;
+        if (from_file) {
+            auto made = file_material(model, part.material);
+            if (!made) return std::move(made).error();
+            material = *made;
+        } else {
+            material = placement.material ? *placement.material : default_material(placement.emitter);
+        }
+        const InstanceId instance = add_instance({part.shape, material, placement.world_from_object},
+                                                 placement.name.empty() ? part.name : placement.name);
+        ++range.count;
+        if (!from_file || placement.emitter) continue;
+        const Rgb emission = model.materials[static_cast<size_t>(part.material)].emission;
+        if (max_component(emission) > 0) add_light(AreaLight{instance, emission, false, 1}, part.name);
+    }
+    return range;
+}
+
+Result<MaterialId> Assets::file_material(Model& model, int number) {
+    const auto i = static_cast<size_t>(number);
+    if (!model.made[i]) {
+        auto material = convert(model.materials[i]);
+        if (!material) return material;
+        model.made[i] = *material;
+    }
+    return *model.made[i];
+}
+
+/// MTL in our terms: illum 3 is a mirror; 4, 6, 7, 9 and what is more transparent than opaque is glass; the rest is
+/// diffuse and two-sided, since the orientation of faces in OBJ files is not dependable.
+Result<MaterialId> Assets::convert(const MeshMaterial& from) {
+    const bool glass = from.illum == 4 || from.illum == 6 || from.illum == 7 || from.illum == 9 || from.dissolve < 0.5f;
+    if (glass) {
+        const Rgb tint = max_component(from.transmission) > 0 ? from.transmission : Rgb{1, 1, 1};
+        return add_material(GlassMaterial{usable_ior(from.ior, loaded_.diagnostics, from.name), {1, 1, 1}, tint},
+                            from.name);
+    }
+    if (from.illum == 3)
+        return add_material(MirrorMaterial{max_component(from.specular) > 0 ? from.specular : Rgb{1, 1, 1}}, from.name);
+    if (from.dissolve < 1) loaded_.diagnostics.warn("partly transparent materials (d, Tr) are rendered opaque");
+    if (from.diffuse_map.empty()) return add_diffuse(from.diffuse, true, from.name);
+
+    // The mesh reader resolved it against the MTL file's folder.
+    if (has_scheme(from.diffuse_map)) return address_error(from.diffuse_map);
+    if (!options_.allow_outside_paths)
+        if (auto inside = check_inside(from.diffuse_map); !inside) return std::move(inside).error();
+    auto texels = open_image(from.diffuse_map);
+    if (!texels) return std::move(texels).error();
+    ImageTexture texture;
+    texture.image = *texels;
+    texture.color_space = default_color_space(*texels);
+    texture.wrap_u = texture.wrap_v = from.map_clamp ? Wrap::clamp : Wrap::repeat;
+    texture.scale = from.map_scale;
+    texture.offset = from.map_offset;
+    return add_material(DiffuseMaterial{add_texture(texture, from.name), true}, from.name);
+}
+
+MaterialId Assets::add_diffuse(Rgb reflectance, bool two_sided, std::string name) {
+    const TextureId texture = add_texture(ConstantTexture{reflectance}, name);
+    return add_material(DiffuseMaterial{texture, two_sided}, std::move(name));
+}
+
+TextureId Assets::add_texture(Texture texture, std::string name) {
+    loaded_.scene.names.textures.push_back(std::move(name));
+    return add<TextureId>(loaded_.scene.textures, std::move(texture));
+}
+
+MaterialId Assets::add_material(Material material, std::string name) {
+    loaded_.scene.names.materials.push_back(std::move(name));
+    return add<MaterialId>(loaded_.scene.materials, std::move(material));
+}
+
+ShapeId Assets::add_shape(Shape shape, std::string name) {
+    loaded_.scene.names.shapes.push_back(std::move(name));
+    return add<ShapeId>(loaded_.scene.shapes, std::move(shape));
+}
+
+MeshId Assets::add_mesh(Mesh mesh, std::string name) {
+    loaded_.scene.names.meshes.push_back(std::move(name));
+    return add<MeshId>(loaded_.scene.meshes, std::move(mesh));
+}
+
+InstanceId Assets::add_instance(Instance instance, std::string name) {
+    loaded_.scene.names.instances.push_back(std::move(name));
+    return add<InstanceId>(loaded_.scene.instances, std::move(instance));
+}
+
+void Assets::add_light(Light light, std::string name) {
+    loaded_.scene.names.lights.push_back(std::move(name));
+    loaded_.scene.lights.push_back(std::move(light));
+}
+
+void Assets::add_camera(Camera camera, std::string name) {
+    loaded_.scene.names.cameras.push_back(std::move(name));
+    loaded_.scene.cameras.push_back(std::move(camera));
+}
+
+MaterialId Assets::default_material(bool emitter) {
+    if (emitter) {
+        if (!black_) black_ = add_diffuse({0, 0, 0}, false, "");
+        return *black_;
+    }
+
+    if (!neutral_) neutral_ = add_diffuse({0.5f, 0.5f, 0.5f}, true, "");
+    return *neutral_;
+}
+
+}  // namespace steradian

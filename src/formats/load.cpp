@@ -1,0 +1,120 @@
+#include "steradian/load.h"
+
+#include <new>
+#include <stdexcept>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "formats/assets.h"
+#include "formats/json/reader.h"
+#include "formats/scene_json/common.h"
+#include "formats/studio.h"
+
+namespace steradian {
+namespace {
+
+Error out_of_memory(const std::string& name) {
+    return {ErrorCode::resources, "there is not enough memory to load the scene", {name, 0, 0, {}}, {}, {}};
+}
+
+std::string folder_of_file(const std::string& path) {
+    const size_t slash = path.find_last_of('/');
+    return slash == std::string::npos ? std::string() : slash == 0 ? "/" : path.substr(0, slash);
+}
+
+bool has_member(json::Value object, std::string_view key) {
+    for (const json::Member member : object.members())
+        if (member.key == key) return true;
+    return false;
+}
+
+Result<LoadedScene> read_json(std::string_view text, const std::string& name, const std::string& base_folder,
+                              const LoadOptions& options) {
+    auto document = json::Document::parse(text, name, options.max_depth);
+    if (!document) return std::move(document).error();
+    const json::Source source(document->text(), name);
+    if (const auto duplicate = document->duplicate_key())
+        source.fail(duplicate->second_offset,
+                    "the key " + json::quoted(duplicate->key) + " stands here for the second time",
+                    "the first one is at " + source.where(duplicate->first_offset).str());
+    LoadedScene loaded;
+    Assets assets(loaded, base_folder, options);
+    const scene_json::Context context{source, loaded, assets};
+    const json::Value root = document->root();
+    if (!root.is(json::Kind::object))
+        source.fail(root.offset(), "a scene must be an object, got " + json::describe(root));
+    // Every course file has an integrator and no version; no file of ours is the other way round.
+    if (has_member(root, "version"))
+        scene_json::load_native(context, root);
+    else if (has_member(root, "integrator"))
+        scene_json::load_course(context, root);
+    else
+        source.fail(root.offset(), "missing key 'version' in the scene", "begin with {\"version\": 1, …");
+    return loaded;
+}
+
+Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& options) {
+    auto text = read_file(path, options.max_file_bytes);
+    if (!text) return std::move(text).error();
+    return load_scene_json(*text, path, folder_of_file(path), options);
+}
+
+Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& options) {
+    const size_t slash = path.find_last_of('/');
+    LoadedScene loaded;
+    Assets assets(loaded, folder_of_file(path), options);
+    const auto about_the_model = [&](Error error) {
+        if (error.where.file.empty()) error.where.file = path;
+        return error;
+    };
+    const auto model = assets.load_model(slash == std::string::npos ? path : path.substr(slash + 1));
+    if (!model) return about_the_model(model.error());
+    const auto placed = assets.place(*model, {});
+    if (!placed) return about_the_model(placed.error());
+    if (placed->count == 0)
+        return Error{
+            ErrorCode::bad_input, "the model has no faces, there is nothing to render", {path, 0, 0, {}}, {}, {}};
+    add_studio(loaded, assets);
+    return loaded;
+}
+
+struct Format {
+    std::string_view extension;
+    Result<LoadedScene> (*load)(const std::string& path, const LoadOptions& options);
+};
+constexpr Format kFormats[] = {{".json", load_json_file}, {".obj", load_model_file}, {".ply", load_model_file}};
+
+/// The one place where what readers throw becomes a value.
+template <class Load>
+Result<LoadedScene> guarded(const std::string& name, Load load) {
+    try {
+        return load();
+    } catch (json::ReadFailure& failure) {
+        return std::move(failure.error);
+    } catch (const std::bad_alloc&) {
+        return out_of_memory(name);
+    } catch (const std::length_error&) {
+        return out_of_memory(name);
+    }
+}
+
+}  // namespace
+
+Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& options) {
+    const std::string extension = extension_of(path);
+    for (const Format& format : kFormats)
+        if (format.extension == extension) return guarded(path, [&] { return format.load(path, options); });
+    std::vector<std::string_view> known;
+    for (const Format& format : kFormats) known.push_back(format.extension);
+    const std::string message = extension.empty()
+                                    ? "a scene file needs an extension that tells its format"
+                                    : "unknown kind of scene file '" + escape_for_display(extension) + "'";
+    return Error{ErrorCode::bad_input, message, {path, 0, 0, {}}, {}, suggestion(extension, known)};
+}
+
+Result<LoadedScene> load_scene_json(std::string_view text, const std::string& name, const std::string& base_folder,
+                                    const LoadOptions& options) {
+    return guarded(name, [&] { return read_json(text, name, base_folder, options); });
+}
+
+}  // namespace steradian

@@ -1,0 +1,73 @@
+#include "formats/scene_json/common.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace steradian::scene_json {
+
+std::string name_hint(std::string_view name, std::span<const std::string_view> names) {
+    constexpr size_t kMostToList = 20;
+    if (names.size() <= kMostToList) return suggestion(name, names);
+    const auto match = closest_match(name, names);
+    return match ? "did you mean '" + *match + "'?" : std::string();
+}
+
+size_t read_type(const Source& source, Value object, std::string_view what, std::span<const std::string_view> types) {
+    if (!object.is(Kind::object))
+        source.fail(object.offset(), std::string(what) + " must be an object, got " + json::describe(object));
+    for (const Member member : object.members())
+        if (member.key == "type")
+            return json::read_choice(source, member.value, "the type of " + std::string(what), types);
+    source.fail(object.offset(), "missing key 'type' in " + std::string(what), suggestion("", types));
+}
+
+void read_resolution(ObjectReader& film, RenderSettings& settings) {
+    const auto value = film.find("resolution");
+    if (!value) return;
+    const Source& source = film.source();
+    static constexpr size_t kTwo[] = {2};
+    json::expect_array(source, *value, "'resolution'", kTwo);
+    auto side = value->elements().begin();
+    settings.width = static_cast<uint32_t>(json::read_integer(source, *side, "the width", 1, kMaxResolution));
+    settings.height = static_cast<uint32_t>(json::read_integer(source, *++side, "the height", 1, kMaxResolution));
+    if (uint64_t(settings.width) * settings.height > kMaxPixels)
+        source.fail(value->offset(),
+                    "the picture has more than the limit of " + std::to_string(kMaxPixels) + " pixels");
+}
+
+Filter read_filter(const Source& source, Value value) {
+    static constexpr float kDefaultRadius[] = {0.5f, 1.0f, 1.5f, 2.0f};
+    static constexpr Range kRadius{0.01, 32};
+    ObjectReader reader(source, value, kFilterSpec, "the filter");
+    const size_t kind = json::read_choice(source, reader.require("type"), "the type of the filter", kFilters);
+    const Filter filter{static_cast<FilterKind>(kind), reader.number_or("radius", kDefaultRadius[kind], kRadius)};
+    reader.finish();
+    return filter;
+}
+
+void check_camera(ObjectReader& camera, const PerspectiveCamera& result, std::string_view up_key) {
+    const Source& source = camera.source();
+    const Vec3d view = Vec3d(result.look_at) - Vec3d(result.position);
+    const Vec3d up(result.up);
+    const size_t look_at = camera.find("look_at") ? camera.find("look_at")->offset() : camera.offset();
+    const size_t up_offset = camera.find(up_key) ? camera.find(up_key)->offset() : look_at;
+    if (!(length(view) > 0))
+        source.fail(look_at, "the camera's 'look_at' is equal to its 'position': there is no direction to look in");
+    if (!(length(up) > 0)) source.fail(up_offset, quoted(up_key) + " must not be the zero vector");
+    if (!(length(cross(normalize(view), normalize(up))) > 1e-6))
+        source.fail(up_offset, quoted(up_key) + " is parallel to the camera's view",
+                    "choose another direction, such as [0, 0, 1] when looking straight down");
+}
+
+void warn_about_reflectance(const Context& context, Rgb reflectance, size_t offset) {
+    if (max_component(reflectance) > 1)
+        context.warn("a reflectance above 1 adds energy: surfaces like this do not exist", offset);
+}
+
+NamedPath read_path(ObjectReader& reader) {
+    const Value value = reader.require("path");
+    return {json::read_string(reader.source(), value, "'path'"), value.offset()};
+}
+
+}  // namespace steradian::scene_json

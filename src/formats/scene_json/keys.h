@@ -1,0 +1,106 @@
+// Every key that a scene file may have, object by object. docs/scene.schema.json says the same to editors; a test
+// compares the two.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "formats/json/reader.h"
+
+namespace steradian::scene_json {
+
+namespace keys {
+using Key = std::string_view;
+
+inline constexpr Key kScene[] = {"$schema", "version",  "comment",   "render", "film",    "camera",
+                                 "cameras", "textures", "materials", "shapes", "objects", "lights"};
+inline constexpr Key kRender[] = {"integrator", "max_depth", "spp", "sampler", "seed", "camera"};
+inline constexpr Key kFilm[] = {"resolution", "filter", "crop"};
+inline constexpr Key kFilter[] = {"type", "radius"};
+inline constexpr Key kCamera[] = {"type", "position", "look_at", "up", "vertical_fov"};
+
+inline constexpr Key kConstantTexture[] = {"type", "color"};
+inline constexpr Key kImageTexture[] = {"type", "path", "color_space", "wrap", "filter", "scale", "offset"};
+inline constexpr Key kCheckerboardTexture[] = {"type", "color0", "color1", "scale", "offset"};
+
+inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided"};
+inline constexpr Key kRefraction[] = {"type", "eta"};
+inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance"};
+inline constexpr Key kMirror[] = {"type", "reflectance"};
+
+inline constexpr Key kMeshShape[] = {"type", "path", "vertices", "triangles", "normals", "uvs"};
+inline constexpr Key kSphereShape[] = {"type", "center", "radius"};
+inline constexpr Key kRectangleShape[] = {"type", "center", "half_u", "half_v"};
+inline constexpr Key kDiskShape[] = {"type", "center", "normal", "radius"};
+
+inline constexpr Key kMeshObject[] = {"type", "name",     "material",  "transform", "light",
+                                      "path", "vertices", "triangles", "normals",   "uvs"};
+inline constexpr Key kSphereObject[] = {"type", "name", "material", "transform", "light", "center", "radius"};
+inline constexpr Key kRectangleObject[] = {"type",  "name",   "material", "transform",
+                                           "light", "center", "half_u",   "half_v"};
+inline constexpr Key kDiskObject[] = {"type", "name", "material", "transform", "light", "center", "normal", "radius"};
+inline constexpr Key kInstanceObject[] = {"type", "name", "material", "transform", "light", "shape"};
+inline constexpr Key kObjectLight[] = {"type", "radiance", "two_sided", "light_samples"};
+
+inline constexpr Key kTransform[] = {"translate", "rotate", "scale", "matrix", "look_at"};
+inline constexpr Key kRotate[] = {"axis", "angle"};
+inline constexpr Key kLookAt[] = {"origin", "target", "up"};
+
+inline constexpr Key kPointLight[] = {"type", "name", "position", "intensity", "flux"};
+inline constexpr Key kSpotLight[] = {"type",      "name", "position",    "direction",  "look_at",
+                                     "intensity", "flux", "inner_angle", "outer_angle"};
+inline constexpr Key kDirectionalLight[] = {"type", "name", "direction", "irradiance"};
+inline constexpr Key kAreaLight[] = {"type", "name", "object", "radiance", "two_sided", "light_samples"};
+inline constexpr Key kEnvironmentLight[] = {"type",        "name",     "radiance", "path",
+                                            "color_space", "rotation", "scale",    "light_samples"};
+}  // namespace keys
+
+using json::ObjectSpec;
+
+inline constexpr ObjectSpec kSceneSpec{"scene", keys::kScene};
+inline constexpr ObjectSpec kRenderSpec{"render", keys::kRender};
+inline constexpr ObjectSpec kFilmSpec{"film", keys::kFilm};
+inline constexpr ObjectSpec kFilterSpec{"filter", keys::kFilter};
+inline constexpr ObjectSpec kCameraSpec{"camera", keys::kCamera};
+inline constexpr ObjectSpec kTextureSpecs[] = {{"constant_texture", keys::kConstantTexture},
+                                               {"image_texture", keys::kImageTexture},
+                                               {"checkerboard_texture", keys::kCheckerboardTexture}};
+inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiffuse},
+                                                {"refraction_material", keys::kRefraction},
+                                                {"glass_material", keys::kGlass},
+                                                {"mirror_material", keys::kMirror}};
+inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
+                                             {"sphere_shape", keys::kSphereShape},
+                                             {"rectangle_shape", keys::kRectangleShape},
+                                             {"disk_shape", keys::kDiskShape}};
+inline constexpr ObjectSpec kObjectSpecs[] = {{"mesh_object", keys::kMeshObject},
+                                              {"sphere_object", keys::kSphereObject},
+                                              {"rectangle_object", keys::kRectangleObject},
+                                              {"disk_object", keys::kDiskObject},
+                                              {"instance_object", keys::kInstanceObject}};
+inline constexpr ObjectSpec kObjectLightSpec{"object_light", keys::kObjectLight};
+inline constexpr ObjectSpec kTransformSpec{"transform_step", keys::kTransform};
+inline constexpr ObjectSpec kRotateSpec{"rotate", keys::kRotate};
+inline constexpr ObjectSpec kLookAtSpec{"look_at", keys::kLookAt};
+inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
+                                             {"spot_light", keys::kSpotLight},
+                                             {"directional_light", keys::kDirectionalLight},
+                                             {"area_light", keys::kAreaLight},
+                                             {"environment_light", keys::kEnvironmentLight}};
+
+// The values of "type", in the order of the specifications above and of the enumerations that the readers use.
+inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard"};
+inline constexpr std::string_view kMaterialTypes[] = {"diffuse", "refraction", "glass", "mirror"};
+inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
+inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
+inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};
+
+inline constexpr std::string_view kIntegrators[] = {"direct"};
+inline constexpr std::string_view kSamplers[] = {"sobol", "independent"};
+inline constexpr std::string_view kFilters[] = {"box", "tent", "gaussian", "mitchell"};
+inline constexpr std::string_view kCameraTypes[] = {"perspective"};
+inline constexpr std::string_view kColorSpaces[] = {"linear", "srgb"};
+inline constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror", "black"};
+inline constexpr std::string_view kTextureFilters[] = {"nearest", "bilinear"};
+
+}  // namespace steradian::scene_json

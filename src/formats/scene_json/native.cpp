@@ -1,0 +1,99 @@
+#include "formats/scene_json/native.h"
+
+namespace steradian::scene_json {
+
+void NativeLoader::load(Value root) {
+    // The version comes first: a later one may have keys that this program does not know.
+    for (const Member member : root.members())
+        if (member.key == "version") read_version(member.value);
+    ObjectReader reader(source_, root, kSceneSpec, "the scene");
+    reader.require("version");
+    reader.string_or("$schema", {});
+    reader.string_or("comment", {});
+    if (const auto film = reader.find("film")) read_film(*film);
+    read_cameras(reader);
+    if (const auto render = reader.find("render")) read_render(*render);
+    if (const auto textures = reader.find("textures")) read_textures(*textures);
+    if (const auto materials = reader.find("materials")) read_materials(*materials);
+    if (const auto shapes = reader.find("shapes")) read_shapes(*shapes);
+    if (const auto objects = reader.find("objects")) read_objects(*objects);
+    if (const auto lights = reader.find("lights")) read_lights(*lights);
+    reader.finish();
+}
+
+void NativeLoader::read_version(Value version) const {
+    if (!version.is(Kind::number))
+        source_.fail(version.offset(), "'version' must be the number 1, got " + json::describe(version));
+    if (version.number() != 1)
+        source_.fail(version.offset(), "scenes of version " + json::describe(version) +
+                                           " are not known to this program, which reads version 1");
+}
+
+void NativeLoader::read_film(Value value) {
+    RenderSettings& settings = context_.loaded.settings;
+    ObjectReader film(source_, value, kFilmSpec, "'film'");
+    read_resolution(film, settings);
+    if (const auto filter = film.find("filter")) settings.filter = read_filter(source_, *filter);
+    if (const auto crop = film.find("crop")) {
+        static constexpr size_t kFour[] = {4};
+        json::expect_array(source_, *crop, "'crop'", kFour);
+        uint32_t edges[4];
+        int i = 0;
+        for (const Value edge : crop->elements()) {
+            const uint32_t limit = i % 2 == 0 ? settings.width : settings.height;
+            edges[i++] = static_cast<uint32_t>(json::read_integer(source_, edge, "an edge of 'crop'", 0, limit));
+        }
+        settings.crop = Crop{edges[0], edges[1], edges[2], edges[3]};
+        if (edges[0] >= edges[2] || edges[1] >= edges[3])
+            source_.fail(crop->offset(), "'crop' has no pixels",
+                         "it is [x0, y0, x1, y1] from the top left corner, with x0 < x1 and y0 < y1");
+    }
+    film.finish();
+}
+
+void NativeLoader::read_cameras(ObjectReader& reader) {
+    const auto one = reader.find("camera");
+    const auto many = reader.find("cameras");
+    if (one && many) source_.fail(reader.key_offset("cameras"), "a scene has either 'camera' or 'cameras', not both");
+    if (!one && !many)
+        source_.fail(reader.offset(), "missing key 'camera' in the scene",
+                     "\"camera\": {\"position\": [0, 1, 5], \"look_at\": [0, 1, 0]}");
+    if (one) return read_camera(*one, "camera");
+    if (!many->is(Kind::object) || many->size() == 0)
+        source_.fail(many->offset(),
+                     "'cameras' must be an object with a camera for each name, got " + json::describe(*many));
+    for (const Member member : many->members()) read_camera(member.value, std::string(member.key));
+}
+
+void NativeLoader::read_camera(Value value, std::string name) {
+    ObjectReader reader(source_, value, kCameraSpec, "the camera");
+    reader.choice_or("type", 0, kCameraTypes);
+    PerspectiveCamera camera;
+    camera.position = reader.vec3("position");
+    camera.look_at = reader.vec3("look_at");
+    camera.up = reader.vec3_or("up", camera.up);
+    camera.vertical_fov = reader.number_or("vertical_fov", camera.vertical_fov, kFieldOfView);
+    check_camera(reader, camera, "up");
+    reader.finish();
+    assets_.add_camera(camera, std::move(name));
+}
+
+void NativeLoader::read_render(Value value) {
+    RenderSettings& settings = context_.loaded.settings;
+    ObjectReader render(source_, value, kRenderSpec, "'render'");
+    settings.integrator = static_cast<IntegratorKind>(render.choice_or("integrator", 0, kIntegrators));
+    settings.max_depth = static_cast<uint32_t>(render.integer_or("max_depth", settings.max_depth, 0, kMaxDepth));
+    settings.samples_per_pixel = render.integer_or("spp", settings.samples_per_pixel, 1, kMaxSamplesPerPixel);
+    settings.sampler = static_cast<SamplerKind>(render.choice_or("sampler", 0, kSamplers));
+    settings.seed = render.integer_or("seed", settings.seed, 0, UINT64_MAX);
+    if (const auto camera = render.find("camera")) {
+        const auto& names = scene().names.cameras;
+        const std::vector<std::string_view> choices(names.begin(), names.end());
+        settings.camera = static_cast<uint32_t>(json::read_choice(source_, *camera, "'camera'", choices));
+    }
+    render.finish();
+}
+
+void load_native(const Context& context, Value root) { NativeLoader(context).load(root); }
+
+}  // namespace steradian::scene_json

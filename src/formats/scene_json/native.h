@@ -1,0 +1,83 @@
+// The reader of Steradian's own scene format, version 1 (docs/scene-format.md).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "formats/scene_json/common.h"
+
+namespace steradian::scene_json {
+
+class NativeLoader {
+public:
+    explicit NativeLoader(const Context& context)
+        : context_(context), source_(context.source), assets_(context.assets) {}
+
+    void load(Value root);
+
+private:
+    // native.cpp
+    void read_version(Value version) const;
+    void read_film(Value value);
+    void read_cameras(ObjectReader& scene);
+    void read_camera(Value value, std::string name);
+    void read_render(Value value);
+
+    // native_surfaces.cpp
+    void read_textures(Value value);
+    TextureId read_texture(Value value, const std::string& name);
+    TextureId read_image_texture(Value value, const std::string& name);
+    /// A colour, the name of a texture, or a texture.
+    TextureId read_reflectance(ObjectReader& material);
+    void read_materials(Value value);
+    MaterialId read_material(Value value, const std::string& name);
+    /// A name or a material.
+    MaterialId use_material(Value value);
+
+    // native_objects.cpp
+    /// What an object or a named shape is made of: one of the two.
+    struct Geometry {
+        std::optional<size_t> model;
+        std::optional<ShapeId> shape;
+    };
+    struct Emission {
+        Rgb radiance;
+        bool two_sided;
+        uint32_t samples;
+    };
+    void read_shapes(Value value);
+    Geometry read_geometry(ObjectReader& reader, size_t type, const std::string& name);
+    Geometry read_mesh(ObjectReader& reader, const std::string& name);
+    Mesh read_inline_mesh(ObjectReader& reader) const;
+    void read_objects(Value value);
+    void read_object(Value value);
+    void make_emitters(InstanceRange range, const Emission& emission, const std::string& name);
+    Emission read_emission(ObjectReader& reader) const;
+
+    // native_lights.cpp
+    void read_lights(Value value);
+    void read_point_light(Value value);
+    void read_spot_light(Value value);
+    void read_directional_light(Value value);
+    void read_area_light(Value value);
+    void read_environment_light(Value value);
+    /// "intensity", or "flux" times `per_flux`: one of the two.
+    Rgb read_intensity(ObjectReader& reader, double per_flux) const;
+
+    Scene& scene() { return context_.loaded.scene; }
+
+    struct NamedObject {
+        InstanceRange instances;
+        bool emits;
+    };
+    const Context& context_;
+    const Source& source_;
+    Assets& assets_;
+    NameTable<TextureId> textures_{"texture"};
+    NameTable<MaterialId> materials_{"material"};
+    NameTable<Geometry> shapes_{"shape"};
+    NameTable<NamedObject> objects_{"object"};
+    bool has_environment_ = false;
+};
+
+}  // namespace steradian::scene_json

@@ -1,0 +1,148 @@
+#include "formats/scene_json/native.h"
+
+namespace steradian::scene_json {
+namespace {
+
+constexpr Range kTextureScale{-1e6, 1e6};
+
+std::string with_name(std::string_view what, const std::string& name) {
+    return name.empty() ? std::string(what) : std::string(what) + " " + quoted(name);
+}
+
+void expect_names(const Source& source, Value value, std::string_view what, std::string_view element) {
+    if (!value.is(Kind::object))
+        source.fail(value.offset(), quoted(what) + " must be an object with a " + std::string(element) +
+                                        " for each name, got " + json::describe(value));
+}
+
+/// One word for both directions, or two.
+void read_wrap(ObjectReader& reader, ImageTexture& texture) {
+    const auto value = reader.find("wrap");
+    if (!value) return;
+    const Source& source = reader.source();
+    if (value->is(Kind::array)) {
+        static constexpr size_t kTwo[] = {2};
+        json::expect_array(source, *value, "'wrap'", kTwo);
+        auto element = value->elements().begin();
+        texture.wrap_u = static_cast<Wrap>(json::read_choice(source, *element, "'wrap'", kWraps));
+        texture.wrap_v = static_cast<Wrap>(json::read_choice(source, *++element, "'wrap'", kWraps));
+    } else {
+        texture.wrap_u = texture.wrap_v = static_cast<Wrap>(json::read_choice(source, *value, "'wrap'", kWraps));
+    }
+}
+
+}  // namespace
+
+void NativeLoader::read_textures(Value value) {
+    expect_names(source_, value, "textures", "texture");
+    for (const Member member : value.members())
+        textures_.insert(member.key, read_texture(member.value, std::string(member.key)));
+}
+
+TextureId NativeLoader::read_texture(Value value, const std::string& name) {
+    const std::string what = with_name("texture", name);
+    const size_t type = read_type(source_, value, what, kTextureTypes);
+    if (type == 1) return read_image_texture(value, name);
+
+    ObjectReader reader(source_, value, kTextureSpecs[type], what);
+    reader.require("type");
+    Texture texture;
+    if (type == 0) {
+        texture = ConstantTexture{reader.color("color", json::kReflectance)};
+    } else {
+        CheckerTexture checker;
+        checker.even = reader.color_or("color0", checker.even, json::kReflectance);
+        checker.odd = reader.color_or("color1", checker.odd, json::kReflectance);
+        checker.scale = reader.vec2_or("scale", checker.scale, kTextureScale);
+        checker.offset = reader.vec2_or("offset", checker.offset, kTextureScale);
+        warn_about_reflectance(context_, checker.even, value.offset());
+        warn_about_reflectance(context_, checker.odd, value.offset());
+        texture = checker;
+    }
+    if (const auto* constant = std::get_if<ConstantTexture>(&texture))
+        warn_about_reflectance(context_, constant->value, value.offset());
+    reader.finish();
+    return assets_.add_texture(texture, name);
+}
+
+TextureId NativeLoader::read_image_texture(Value value, const std::string& name) {
+    ObjectReader reader(source_, value, kTextureSpecs[1], with_name("texture", name));
+    reader.require("type");
+    const NamedPath path = read_path(reader);
+    ImageTexture texture;
+    read_wrap(reader, texture);
+    texture.bilinear = reader.choice_or("filter", 1, kTextureFilters) == 1;
+    texture.scale = reader.vec2_or("scale", texture.scale, kTextureScale);
+    texture.offset = reader.vec2_or("offset", texture.offset, kTextureScale);
+    const auto space = reader.find("color_space");
+    const size_t chosen = space ? json::read_choice(source_, *space, "'color_space'", kColorSpaces) : 0;
+    reader.finish();
+    texture.image = source_.take(assets_.image(path.path), path.offset);
+    texture.color_space = space ? static_cast<ColorSpace>(chosen) : assets_.default_color_space(texture.image);
+    return assets_.add_texture(texture, name);
+}
+
+TextureId NativeLoader::read_reflectance(ObjectReader& material) {
+    const Value value = material.require("reflectance");
+    if (value.is(Kind::string)) return textures_.get(source_, value.string(), value.offset());
+    if (value.is(Kind::object)) return read_texture(value, "");
+    if (!value.is(Kind::number) && !value.is(Kind::array))
+        source_.fail(value.offset(), "'reflectance' must be a colour, the name of a texture or a texture, got " +
+                                         json::describe(value));
+    const Rgb color = json::read_color(source_, value, "'reflectance'", json::kReflectance);
+    warn_about_reflectance(context_, color, value.offset());
+    return assets_.add_texture(ConstantTexture{color}, "");
+}
+
+void NativeLoader::read_materials(Value value) {
+    expect_names(source_, value, "materials", "material");
+    for (const Member member : value.members())
+        materials_.insert(member.key, read_material(member.value, std::string(member.key)));
+}
+
+MaterialId NativeLoader::read_material(Value value, const std::string& name) {
+    const std::string what = with_name("material", name);
+    const size_t type = read_type(source_, value, what, kMaterialTypes);
+    ObjectReader reader(source_, value, kMaterialSpecs[type], what);
+    reader.require("type");
+    const auto tint = [&](std::string_view key) {
+        const Rgb color = reader.color_or(key, {1, 1, 1}, json::kReflectance);
+        warn_about_reflectance(context_, color, value.offset());
+        return color;
+    };
+    Material material;
+    switch (type) {
+        case 0: {
+            DiffuseMaterial diffuse;
+            diffuse.reflectance = read_reflectance(reader);
+            diffuse.two_sided = reader.boolean_or("two_sided", false);
+            material = diffuse;
+            break;
+        }
+        case 1:
+            material = RefractionMaterial{reader.number_or("eta", 1.5f, kEta)};
+            break;
+        case 2: {
+            GlassMaterial glass;
+            glass.eta = reader.number_or("eta", glass.eta, kEta);
+            glass.reflectance = tint("reflectance");
+            glass.transmittance = tint("transmittance");
+            material = glass;
+            break;
+        }
+        default:
+            material = MirrorMaterial{tint("reflectance")};
+            break;
+    }
+    reader.finish();
+    return assets_.add_material(material, name);
+}
+
+MaterialId NativeLoader::use_material(Value value) {
+    if (value.is(Kind::string)) return materials_.get(source_, value.string(), value.offset());
+    if (value.is(Kind::object)) return read_material(value, "");
+    source_.fail(value.offset(),
+                 "'material' must be the name of a material or a material, got " + json::describe(value));
+}
+
+}  // namespace steradian::scene_json
