@@ -41,6 +41,9 @@ struct Error {
     std::string str() const;
 };
 
+/// An error that no place in a file belongs to.
+Error make_error(ErrorCode code, std::string message, std::string hint = {});
+
 /// Things that did not stop the work but that the user should know. Repeated ones are counted, not repeated.
 struct Warning {
     std::string message;

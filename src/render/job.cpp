@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.width, s.height}); }
 
-Error settings_error(std::string message) { return {ErrorCode::usage, std::move(message), {}, {}, {}}; }
+Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
 
 Status check_crop(const RenderSettings& s) {
     if (!s.crop || (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height)) return Ok{};
@@ -39,15 +39,14 @@ Status check_memory(const RenderSettings& s) {
     const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float));
     const uint64_t available = available_memory();
     if (needed <= available) return Ok{};
-    return Error{ErrorCode::resources, fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20),
-                 {}, {}, "render it in parts with --crop"};
+    return make_error(ErrorCode::resources, fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20), "render it in parts with --crop");
 }
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
     if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
     if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
-        return Error{ErrorCode::resources, fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width,
-                                                       s.height, kMaxResolution, kMaxPixels), {}, {}, {}};
+        return make_error(ErrorCode::resources, fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width,
+                                                       s.height, kMaxResolution, kMaxPixels));
     if (auto status = check_crop(s); !status) return status;
     if (auto status = check_memory(s); !status) return status;
     if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
@@ -89,7 +88,7 @@ public:
             try {
                 workers_.emplace_back([this, integrator = std::move(integrators[i])] { work(*integrator); });
             } catch (const std::system_error& e) {
-                fail({ErrorCode::resources, fmt::format("cannot start {} threads: {}", count, e.what()), {}, {}, {}});
+                fail(make_error(ErrorCode::resources, fmt::format("cannot start {} threads: {}", count, e.what())));
                 retire(count - i);
                 break;
             }
@@ -115,6 +114,7 @@ public:
     }
 
     Image snapshot() const override {
+        const FloatMode mode;
         Image image = film_.develop();
         describe(image, film_.samples_per_pixel());
         return image;
@@ -136,7 +136,7 @@ public:
             result.statistics = statistics();
             return result;
         } catch (const std::bad_alloc&) {
-            return Error{ErrorCode::resources, "not enough memory for the picture", {}, {}, {}};
+            return make_error(ErrorCode::resources, "not enough memory for the picture");
         }
     }
 
@@ -171,9 +171,9 @@ private:
                 took_part = true;
             }
         } catch (const std::bad_alloc&) {
-            fail({ErrorCode::resources, "not enough memory to render", {}, {}, {}});
+            fail(make_error(ErrorCode::resources, "not enough memory to render"));
         } catch (const std::exception& e) {
-            fail({ErrorCode::render_failed, fmt::format("the render failed: {}", e.what()), {}, {}, {}});
+            fail(make_error(ErrorCode::render_failed, fmt::format("the render failed: {}", e.what())));
         }
         {
             const std::lock_guard lock(mutex_);
@@ -243,6 +243,7 @@ private:
 
 Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings,
                                                     const Execution& execution) {
+    const FloatMode mode;
     const auto& cameras = scene->shading.scene.cameras;
     if (auto status = check(settings, execution, cameras.size()); !status) return std::move(status).error();
     auto camera = CameraSampler::make(cameras[settings.camera], settings.width, settings.height);
@@ -252,9 +253,9 @@ Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const Render
         job->launch();
         return std::unique_ptr<RenderJob>(std::move(job));
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::resources, fmt::format("not enough memory for a picture of {} × {} pixels", settings.width, settings.height), {}, {}, {}};
+        return make_error(ErrorCode::resources, fmt::format("not enough memory for a picture of {} × {} pixels", settings.width, settings.height));
     } catch (const std::exception& e) {
-        return Error{ErrorCode::render_failed, fmt::format("cannot start the render: {}", e.what()), {}, {}, {}};
+        return make_error(ErrorCode::render_failed, fmt::format("cannot start the render: {}", e.what()));
     }
 }
 

@@ -9,6 +9,7 @@
 #include "math/transform.h"
 #include "render/render_scene.h"
 #include "scene/validate.h"
+#include "shading/surface.h"
 
 namespace steradian {
 namespace {
@@ -23,13 +24,8 @@ struct AnalyticShapes {
         for (const Shape& shape : shapes) {
             if (const auto* s = std::get_if<Sphere>(&shape)) spheres.push_back({s->center, s->radius});
             if (const auto* r = std::get_if<Rectangle>(&shape)) rectangles.push_back({r->center, r->half_u, r->half_v});
-            if (const auto* d = std::get_if<Disk>(&shape)) disks.push_back(disk_geometry(*d));
+            if (const auto* d = std::get_if<Disk>(&shape)) disks.push_back({d->center, disk_axes(*d).u, disk_axes(*d).v});
         }
-    }
-
-    static DiskGeometry disk_geometry(const Disk& d) {
-        const Frame frame = Frame::from_z(normalize(d.normal));
-        return {d.center, frame.x * d.radius, frame.y * d.radius};
     }
 };
 
@@ -82,12 +78,13 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
 }  // namespace
 
 Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics) {
+    const FloatMode mode;
     try {
         return prepare_checked(std::move(scene), execution, diagnostics);
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::resources, "not enough memory to prepare the scene", {}, {}, {}};
+        return make_error(ErrorCode::resources, "not enough memory to prepare the scene");
     } catch (const std::exception& e) {
-        return Error{ErrorCode::render_failed, fmt::format("cannot prepare the scene: {}", e.what()), {}, {}, {}};
+        return make_error(ErrorCode::render_failed, fmt::format("cannot prepare the scene: {}", e.what()));
     }
 }
 

@@ -210,7 +210,7 @@ Status validate(const Scene& scene) {
         Validator(scene).run();
         return Ok{};
     } catch (const Fault& fault) {
-        return Error{ErrorCode::bad_input, fault.message, {}, {}, {}};
+        return make_error(ErrorCode::bad_input, fault.message);
     }
 }
 
