@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <utility>
 
 #include "base/text.h"
@@ -59,8 +60,11 @@ std::string folder_of(const std::string& path) {
 }  // namespace
 
 Result<std::string> read_file(const std::string& path, uint64_t max_bytes) {
-    const auto fail = [&](ErrorCode code, const std::string& message) -> Error { return {code, message, {path, 0, 0, {}}, {}, {}}; };
-    if (path.find('\0') != std::string::npos) return fail(ErrorCode::bad_input, "a file name cannot contain a NUL byte");
+    const auto fail = [&](ErrorCode code, const std::string& message) -> Error {
+        return {code, message, {path, 0, 0, {}}, {}, {}};
+    };
+    if (path.find('\0') != std::string::npos)
+        return fail(ErrorCode::bad_input, "a file name cannot contain a NUL byte");
     struct stat info {};
     if (::stat(path.c_str(), &info) != 0) return file_error(ErrorCode::bad_input, path, "cannot open the file", errno);
     if (const char* kind = special_kind(info.st_mode))
@@ -68,11 +72,19 @@ Result<std::string> read_file(const std::string& path, uint64_t max_bytes) {
     // O_NONBLOCK: should the file have become a pipe in the meantime, opening it must not wait for a writer.
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file.open()) return file_error(ErrorCode::bad_input, path, "cannot open the file", errno);
-    if (::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode)) return fail(ErrorCode::bad_input, "expected a regular file");
+    if (::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode))
+        return fail(ErrorCode::bad_input, "expected a regular file");
     const auto size = static_cast<uint64_t>(info.st_size);
     if (size > max_bytes)
-        return fail(ErrorCode::resources, "the file has " + std::to_string(size) + " bytes, the limit is " + std::to_string(max_bytes));
-    std::string data(size, '\0');
+        return fail(ErrorCode::resources,
+                    "the file has " + std::to_string(size) + " bytes, the limit is " + std::to_string(max_bytes));
+    std::string data;
+    try {
+        data.resize(size);
+    } catch (const std::exception&) {
+        return fail(ErrorCode::resources,
+                    "not enough memory to read the " + std::to_string(size) + " bytes of the file");
+    }
     size_t done = 0;
     while (done < data.size()) {
         const ssize_t n = ::read(file.get(), data.data() + done, data.size() - done);
@@ -99,7 +111,9 @@ AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 AtomicFile::~AtomicFile() = default;
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
-    const auto fail = [&](const std::string& message) -> Error { return {ErrorCode::resources, message, {path, 0, 0, {}}, {}, {}}; };
+    const auto fail = [&](const std::string& message) -> Error {
+        return {ErrorCode::resources, message, {path, 0, 0, {}}, {}, {}};
+    };
     if (path.empty() || path.find('\0') != std::string::npos) return fail("this is not a usable file name");
     auto state = std::make_unique<State>();
     state->path = path;
@@ -112,8 +126,10 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     mode_t mode = 0666;
     const bool exists = ::stat(state->path.c_str(), &info) == 0;
     if (exists) {
-        if (const char* kind = special_kind(info.st_mode)) return fail(std::string("cannot write here: this is ") + kind);
-        if (::access(state->path.c_str(), W_OK) != 0) return file_error(ErrorCode::resources, path, "cannot replace the file", errno);
+        if (const char* kind = special_kind(info.st_mode))
+            return fail(std::string("cannot write here: this is ") + kind);
+        if (::access(state->path.c_str(), W_OK) != 0)
+            return file_error(ErrorCode::resources, path, "cannot replace the file", errno);
         mode = info.st_mode & 07777;
     } else if (::lstat(state->path.c_str(), &info) == 0) {
         return fail("cannot write here: this is a symbolic link to nothing");
@@ -121,13 +137,16 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     const std::string folder = folder_of(state->path);
     for (unsigned attempt = 0; attempt < 100; ++attempt) {
         // Short, so that names near the file system's limit still work.
-        std::string temporary = folder + "/.steradian-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp";
+        std::string temporary =
+            folder + "/.steradian-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp";
         state->file = Descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (state->file.open()) {
             state->temporary = std::move(temporary);
             break;
         }
-        if (errno != EEXIST) return file_error(ErrorCode::resources, path, "cannot write to the folder " + escape_for_display(folder), errno);
+        if (errno != EEXIST)
+            return file_error(ErrorCode::resources, path, "cannot write to the folder " + escape_for_display(folder),
+                              errno);
     }
     if (!state->file.open()) return fail("cannot make a temporary file beside it");
     if (exists) (void)::fchmod(state->file.get(), mode);
@@ -138,7 +157,8 @@ Status AtomicFile::write(std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t n = ::write(state_->file.get(), bytes.data(), bytes.size());
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return file_error(ErrorCode::resources, state_->path, "cannot write the file", errno);
+        if (n <= 0)
+            return file_error(ErrorCode::resources, state_->path, "cannot write the file", n < 0 ? errno : ENOSPC);
         bytes.remove_prefix(static_cast<size_t>(n));
     }
     return Ok{};
@@ -146,12 +166,15 @@ Status AtomicFile::write(std::string_view bytes) {
 
 Status AtomicFile::commit() {
     State& s = *state_;
-    if (::fsync(s.file.get()) != 0) return file_error(ErrorCode::resources, s.path, "cannot flush the file to the disk", errno);
-    if (const int error = s.file.reset()) return file_error(ErrorCode::resources, s.path, "cannot close the file", error);
+    if (::fsync(s.file.get()) != 0)
+        return file_error(ErrorCode::resources, s.path, "cannot flush the file to the disk", errno);
+    if (const int error = s.file.reset())
+        return file_error(ErrorCode::resources, s.path, "cannot close the file", error);
     if (::rename(s.temporary.c_str(), s.path.c_str()) != 0)
         return file_error(ErrorCode::resources, s.path, "cannot put the file in place", errno);
     s.temporary.clear();
-    // The rename itself must survive a power cut. File systems that cannot sync a folder say EINVAL: nothing to do there.
+    // The rename itself must survive a power cut. File systems that cannot sync a folder say EINVAL: nothing to do
+    // there.
     const Descriptor folder(::open(folder_of(s.path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder.open() && ::fsync(folder.get()) != 0 && errno != EINVAL)
         return file_error(ErrorCode::resources, s.path, "cannot flush the folder to the disk", errno);

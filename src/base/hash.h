@@ -22,10 +22,8 @@ public:
     void bytes(const void* data, size_t size);
 
     template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void value(T v) {
-        bytes(&v, sizeof v);
-    }
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void value(T v) { bytes(&v, sizeof v); }
     /// Length first, so that neighbouring strings cannot be confused.
     void text(std::string_view s) {
         value(uint64_t(s.size()));
@@ -33,8 +31,8 @@ public:
     }
     /// Elements must have no padding.
     template <class T>
-        requires(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>)
-    void array(std::span<const T> s) {
+    requires(std::has_unique_object_representations_v<T> ||
+             std::is_floating_point_v<T>) void array(std::span<const T> s) {
         value(uint64_t(s.size()));
         bytes(s.data(), s.size_bytes());
     }

@@ -34,7 +34,8 @@ void parallel_for(size_t count, size_t grain, const std::function<void(size_t, s
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
 
-/// Process-wide permission for n threads (TBB's own default is the number of cores); for applications, not for libraries.
+/// Process-wide permission for n threads (TBB's own default is the number of cores); for applications, not for
+/// libraries.
 class ThreadLimit {
 public:
     explicit ThreadLimit(uint32_t threads);

@@ -15,8 +15,11 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 size_t utf8_length(std::string_view s) {
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(s[i]); };
     const unsigned char first = byte(0);
-    const size_t n = first < 0x80 ? 1 : first >= 0xc2 && first < 0xe0 ? 2 : (first & 0xf0) == 0xe0 ? 3
-                   : first >= 0xf0 && first < 0xf5 ? 4 : 0;
+    const size_t n = first < 0x80                    ? 1
+                     : first >= 0xc2 && first < 0xe0 ? 2
+                     : (first & 0xf0) == 0xe0        ? 3
+                     : first >= 0xf0 && first < 0xf5 ? 4
+                                                     : 0;
     if (n == 0 || n > s.size()) return 0;
     for (size_t i = 1; i < n; ++i)
         if ((byte(i) & 0xc0) != 0x80) return 0;
@@ -66,7 +69,8 @@ std::string escape_for_display(std::string_view text, size_t max_bytes) {
 std::optional<std::string> closest_match(std::string_view word, std::span<const std::string_view> candidates) {
     if (word.empty() || word.size() > 64) return std::nullopt;
     std::string_view best;
-    size_t best_distance = std::max<size_t>(1, word.size() / 3) + 1;
+    // A word with every letter wrong is another word.
+    size_t best_distance = std::min(std::max<size_t>(1, word.size() / 3), word.size() - 1) + 1;
     for (const std::string_view candidate : candidates) {
         const size_t distance = edit_distance(word, candidate);
         if (distance < best_distance) best_distance = distance, best = candidate;
@@ -87,7 +91,6 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
 }
 
 TextPosition locate(std::string_view text, size_t offset) {
-    constexpr size_t kWidth = 160;
     offset = std::min(offset, text.size());
     size_t begin = 0;
     TextPosition at;
@@ -98,27 +101,48 @@ TextPosition locate(std::string_view text, size_t offset) {
     at.column = static_cast<uint32_t>(std::min<size_t>(offset - begin + 1, std::numeric_limits<uint32_t>::max()));
     size_t end = text.find_first_of("\r\n", offset);
     end = std::min(end, text.size());
-    if (offset > begin + kWidth / 2) begin = offset - kWidth / 2;
-    at.excerpt = std::string(text.substr(begin, std::min(end - begin, kWidth)));
+    if (end == offset && end > begin && end < text.size() && text[end] == '\n' && text[end - 1] == '\r') --end;
+    if (offset > begin + kExcerptMargin) begin = offset - kExcerptMargin;
+    at.excerpt = std::string(text.substr(begin, std::min(end - begin, kExcerptWidth)));
     return at;
 }
 
+namespace {
+
+/// Whether a decimal number that from_chars found out of range is too small, not too large: the power of ten of its
+/// first significant digit decides. The exponent saturates; no text is long enough to bring it back from there.
+bool is_tiny(std::string_view magnitude) {
+    constexpr int64_t kFar = int64_t(1) << 62;
+    const size_t e = std::min(magnitude.find_first_of("eE"), magnitude.size());
+    const std::string_view mantissa = magnitude.substr(0, e);
+    const auto point = static_cast<int64_t>(std::min(mantissa.find('.'), mantissa.size()));
+    const size_t first = mantissa.find_first_of("123456789");
+    if (first == mantissa.npos) return true;
+    const auto digit = static_cast<int64_t>(first);
+    int64_t exponent = 0;
+    if (e < magnitude.size()) {
+        std::string_view digits = magnitude.substr(e + 1);
+        if (digits.starts_with('+')) digits.remove_prefix(1);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
+        if (error == std::errc::result_out_of_range) exponent = digits.starts_with('-') ? -kFar : kFar;
+    }
+    exponent = std::clamp(exponent, -kFar, kFar);
+    return exponent + (digit < point ? point - digit - 1 : point - digit) < 0;
+}
+
+}  // namespace
+
 std::optional<double> parse_double(std::string_view text) {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    if (text.empty() || text.front() == '+') return std::nullopt;
+    if (text.starts_with('+')) {
+        text.remove_prefix(1);
+        if (text.starts_with('-')) return std::nullopt;
+    }
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (end != text.data() + text.size()) return std::nullopt;
     if (error == std::errc::result_out_of_range) {
-        // from_chars does not say which side: decide by the position of the first significant digit and the exponent.
-        const bool negative = text.front() == '-';
-        const size_t e = text.find_first_of("eE");
-        const std::string_view mantissa = text.substr(negative, (e == text.npos ? text.size() : e) - negative);
-        const size_t point = std::min(mantissa.find('.'), mantissa.size());
-        const size_t digit = mantissa.find_first_of("123456789");
-        bool tiny = digit == mantissa.npos || digit > point;
-        if (e != text.npos && e + 1 < text.size()) tiny = text[e + 1] == '-';
-        value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+        const bool negative = text.starts_with('-');
+        value = is_tiny(text.substr(negative)) ? 0.0 : std::numeric_limits<double>::infinity();
         return negative ? -value : value;
     }
     if (error != std::errc()) return std::nullopt;

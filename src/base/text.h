@@ -18,15 +18,20 @@ std::optional<std::string> closest_match(std::string_view word, std::span<const 
 /// "did you mean 'x'?", or "one of a, b, c" when nothing is close.
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
 
-/// Line and column (1-based) of a byte offset, and that line's text (cut to a readable width around the column).
+/// How much of a long line is shown, and how much of that before the place in question (in bytes).
+inline constexpr size_t kExcerptWidth = 160, kExcerptMargin = 80;
+
+/// Line and column (1-based) of a byte offset, and that line's text. Lines end with LF, CR LF or CR. A line longer than
+/// kExcerptWidth is cut; where the column is beyond kExcerptMargin, to begin exactly that many bytes before the place,
+/// which is how Error::str knows where to put the caret.
 struct TextPosition {
     uint32_t line = 1, column = 1;
     std::string excerpt;
 };
 TextPosition locate(std::string_view text, size_t offset);
 
-/// Whole-string number parse by std::from_chars, independent of locale; a leading '+' is accepted.
-/// Out-of-range values give infinity or zero with the right sign, as strtod would.
+/// Whole-string number parse by std::from_chars, independent of locale; a leading '+' is accepted, and so are inf and
+/// nan. Out-of-range values give infinity or zero with the right sign, as strtod would.
 std::optional<double> parse_double(std::string_view text);
 
 bool iequals(std::string_view a, std::string_view b);
