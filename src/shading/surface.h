@@ -38,8 +38,9 @@ DiskAxes disk_axes(const Disk& disk) noexcept;
 /// of every plane with normal n through the box p ± p_error.
 Vec3 offset_origin(Vec3 p, Vec3 p_error, Vec3 n, Vec3 direction) noexcept;
 
-/// A ray that leaves the surface; it does not hit the surface it starts from. (ng itself is rounded to float, so a
-/// direction within about 1e-6 of the tangent plane may still be one that enters the exact surface.)
+/// A ray that leaves the surface; it does not hit the surface it starts from. (ng is rounded to float, and so is the
+/// direction in the space of an instance: one within about 1e-6 of the tangent plane, times the anisotropy of the
+/// instance's transform, may still be one that enters the exact surface.)
 Ray spawn_ray(const SurfacePoint& from, Vec3 direction) noexcept;
 
 }  // namespace steradian
