@@ -91,14 +91,7 @@ public:
     int find(const obj::FaceList& list) {
         const auto found = by_name_.find(list.material);
         if (found == by_name_.end()) {
-            ++undefined_;
-            if (undefined_ <= kMaxNamed)
-                diagnostics_.warn(
-                    "material '" + escape_for_display(list.material, 100) + "' is not defined; the default is used",
-                    place(offset_of(list.material)));
-            else
-                diagnostics_.warn("other materials are not defined; the default is used",
-                                  place(offset_of(list.material)));
+            warn_undefined(list.material);
             return -1;
         }
         used.push_back(found->second);
@@ -112,6 +105,17 @@ private:
 
     size_t offset_of(std::string_view part) const { return static_cast<size_t>(part.data() - text_.data()); }
     SourceLocation place(size_t offset) const { return text_location(text_, name_, offset); }
+
+    void warn_undefined(std::string_view material) {
+        ++undefined_;
+        if (undefined_ <= kMaxNamed)
+            diagnostics_.warn(
+                "material '" + escape_for_display(material, 100) + "' is not defined; the default is used",
+                place(offset_of(material)));
+        else  // finding the place takes a walk through the text: once is enough
+            diagnostics_.warn("other materials are not defined; the default is used",
+                              undefined_ == kMaxNamed + 1 ? place(offset_of(material)) : SourceLocation{});
+    }
 
     Status load_file(const std::string& file, size_t offset, const std::string* content) {
         const std::string path = resolve_asset(file, folder_);

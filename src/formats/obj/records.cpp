@@ -110,6 +110,7 @@ void ChunkReader::read_position(Words& words) {
     p.y = required(words, kExpected);
     p.z = required(words, kExpected);
     // A weight (for rational curves only), or a colour, or both may follow.
+    words.more();
     const char* const first = words.position();
     int extra = 0;
     for (; words.more(); ++extra) required(words, "a weight or a colour after the coordinates");

@@ -322,6 +322,16 @@ SourceLocation location_of(std::string_view data, const std::string& name, bool 
     return {name, 0, 0, offset};
 }
 
+Error binary_error(const std::string& name, const ParseFailure& failure) {
+    Error error;
+    error.code = failure.code;
+    error.message = failure.message;
+    error.where.file = name;
+    error.where.byte = failure.offset;
+    error.hint = failure.hint;
+    return error;
+}
+
 MeshFile read_ply(std::string_view data, const std::string& name, const Header& header, bool text) {
     MeshFile file;
     describe_ignored(header, data, name, file.diagnostics);
@@ -353,7 +363,7 @@ Result<MeshFile> parse_ply(std::string_view data, const std::string& name, const
         return read_ply(data, name, header, text);
     } catch (const ParseFailure& failure) {
         if (text || failure.offset < header.size) return text_error(data, name, failure);
-        return Error{failure.code, failure.message, {name, 0, 0, failure.offset}, {}, failure.hint};
+        return binary_error(name, failure);
     } catch (const std::bad_alloc&) {
         return out_of_memory(name);
     }
