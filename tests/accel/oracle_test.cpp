@@ -1,0 +1,119 @@
+// The hierarchy against the loop over everything, to the bit.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "scenes.h"
+#include "support/support.h"
+
+namespace steradian::test {
+namespace {
+
+struct Variant {
+    BvhBuilder builder;
+    uint32_t max_depth;
+};
+constexpr Variant kVariants[] = {{BvhBuilder::sah, 64},
+                                 {BvhBuilder::median, 64},
+                                 {BvhBuilder::sah, 5},
+                                 {BvhBuilder::median, 3},
+                                 {BvhBuilder::sah, 1}};
+
+std::string name_of(const Variant& v) {
+    return std::string(v.builder == BvhBuilder::sah ? "sah" : "median") + ", max depth " + std::to_string(v.max_depth);
+}
+
+std::vector<Accel> build_all(const TestScene& scene) {
+    std::vector<Accel> built;
+    const std::vector<Geometry> geometries = scene.geometries();
+    for (const Variant& v : kVariants) {
+        AccelOptions options;
+        options.builder = v.builder;
+        options.max_depth = v.max_depth;
+        Result<Accel> accel = Accel::build(geometries, scene.instances, options);
+        if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
+        EXPECT_LE(accel->statistics().depth, v.max_depth) << scene.name << ": " << name_of(v);
+        built.push_back(std::move(*accel));
+    }
+    return built;
+}
+
+/// Compares all answers of one variant; at most a few failures are written out.
+void compare(const TestScene& scene, const Variant& variant, const Accel& accel, const std::vector<Ray>& rays,
+             const std::vector<Hit>& expected) {
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> occluded(rays.size());
+    accel.intersect(rays, hits);
+    accel.occluded(rays, occluded);
+    size_t different = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (same_bits(hits[i], expected[i]) && (occluded[i] != 0) == expected[i].found()) continue;
+        if (++different > 3) continue;
+        ADD_FAILURE() << scene.name << ", " << name_of(variant) << "\nray      " << describe(rays[i]) << "\nexpected "
+                      << describe(expected[i]) << "\ngot      " << describe(hits[i]) << ", occluded "
+                      << int(occluded[i]);
+    }
+    EXPECT_EQ(different, 0u) << scene.name << ", " << name_of(variant) << ": of " << rays.size() << " rays";
+}
+
+/// Shortens some ranges to end, or begin, exactly at a hit: both ends are inclusive.
+void cut_at_hits(std::vector<Ray>& rays, std::vector<Hit>& hits, const BruteForce& brute) {
+    for (size_t i = 0; i < rays.size(); i += 5) {
+        if (!hits[i].found()) continue;
+        (i % 2 ? rays[i].tmin : rays[i].tmax) = hits[i].t;
+        hits[i] = brute.first_hit(rays[i]);
+        EXPECT_TRUE(hits[i].found());
+    }
+}
+
+TEST(Oracle, EveryBitOfEveryHit) {
+    const std::vector<TestScene> scenes = hard_scenes();
+    const size_t total = by_tier<size_t>(400'000, 10'000'000);
+    size_t hit = 0, shot = 0;
+    for (size_t s = 0; s < scenes.size(); ++s) {
+        const BruteForce brute(scenes[s]);
+        const std::vector<Accel> built = build_all(scenes[s]);
+        const size_t share = total / scenes.size() + 1, batch = 50'000;
+        for (size_t done = 0; done < share; done += batch) {
+            std::vector<Ray> rays = hard_rays(scenes[s], std::min(batch, share - done), 1000 * s + done);
+            std::vector<Hit> expected(rays.size());
+            for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+            cut_at_hits(rays, expected, brute);
+            for (size_t v = 0; v < built.size(); ++v) compare(scenes[s], kVariants[v], built[v], rays, expected);
+            for (const Hit& h : expected) hit += h.found();
+            shot += rays.size();
+        }
+    }
+    // The rays are not all misses.
+    EXPECT_GT(hit, shot / 4);
+    std::printf("%zu rays, %zu of them hit\n", shot, hit);
+}
+
+TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {
+    const std::vector<TestScene> scenes = hard_scenes();
+    const size_t each = by_tier<size_t>(400, 20'000);
+    for (size_t s = 0; s < scenes.size(); ++s) {
+        const BruteForce brute(scenes[s]);
+        const std::vector<Accel> built = build_all(scenes[s]);
+        const std::vector<Ray> rays = hard_rays(scenes[s], each, 77 + s);
+        for (const Ray& ray : rays) {
+            const std::vector<Hit> expected = brute.all_hits(ray);
+            for (size_t v = 0; v < 3; ++v) {
+                Hit hit = built[v].intersect(ray);
+                for (size_t k = 0; k <= expected.size(); ++k) {
+                    const Hit& wanted = k < expected.size() ? expected[k] : Hit{};
+                    ASSERT_TRUE(same_bits(hit, wanted))
+                        << scenes[s].name << ", " << name_of(kVariants[v]) << ", hit " << k << " of "
+                        << expected.size() << "\nray      " << describe(ray) << "\nexpected " << describe(wanted)
+                        << "\ngot      " << describe(hit);
+                    const Hit after = hit;
+                    built[v].next_hit({&ray, 1}, {&after, 1}, {&hit, 1});
+                }
+                EXPECT_FALSE(hit.found());
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace steradian::test
