@@ -30,7 +30,7 @@ Affine rotation_degrees(double angle, std::array<double, 3> axis) {
     // Quarter turns exactly: sin(π) is not 0 in floating point, and such rotations are common.
     double s, c;
     const double turns = angle / 90;
-    if (turns == std::floor(turns)) {
+    if (std::fabs(turns) < 0x1p52 && turns == std::floor(turns)) {
         static constexpr double kSin[4] = {0, 1, 0, -1};
         const int quarter = static_cast<int>(turns - 4 * std::floor(turns / 4)) & 3;
         s = kSin[quarter], c = kSin[(quarter + 1) & 3];
@@ -97,6 +97,7 @@ std::optional<double> uniform_scale(const Affine& a) {
     const Vec3d c[3] = {
         {a.m[0][0], a.m[1][0], a.m[2][0]}, {a.m[0][1], a.m[1][1], a.m[2][1]}, {a.m[0][2], a.m[1][2], a.m[2][2]}};
     const double s2 = dot(c[0], c[0]), tolerance = 1e-6 * s2;
+    if (!(s2 > 0)) return std::nullopt;
     for (int i = 0; i < 3; ++i)
         if (!(std::fabs(dot(c[i], c[i]) - s2) <= tolerance) || !(std::fabs(dot(c[i], c[(i + 1) % 3])) <= tolerance))
             return std::nullopt;

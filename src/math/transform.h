@@ -17,7 +17,8 @@ std::optional<Affine> inverse(const Affine& a);
 double determinant(const Affine& a);
 bool is_identity(const Affine& a);
 bool is_finite(const Affine& a);
-/// The uniform scale factor when `a` is a rotation or reflection times one (relative tolerance 1e-6); else nothing.
+/// The uniform scale factor when `a` is a rotation or reflection times one (relative tolerance 1e-6) that is not 0;
+/// else nothing.
 std::optional<double> uniform_scale(const Affine& a);
 
 }  // namespace steradian

@@ -1,7 +1,6 @@
 // From uniform numbers to points on disks, spheres and triangles; each with its density. Inputs are in [0, 1) on the
 // samplers' grid of 2^-24; each stands for the middle of its cell, so that no warp ever sees 0 or 1 and all are
-// symmetric. The warps are area preserving, and continuous inside the unit square but for the hemisphere's rim closing
-// to the south pole of the sphere: well spread numbers give well spread points.
+// symmetric. The warps preserve areas and are continuous: well spread numbers give well spread points.
 #pragma once
 
 #include "math/elementary.h"
