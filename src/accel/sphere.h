@@ -13,7 +13,7 @@ struct SphereCandidates {
     float t[2];  ///< ascending, rounded once; may be infinite
 };
 
-/// Both points where the line through the ray meets the sphere; touching counts once. Never for radius 0.
+/// Both points where the line through the ray meets the sphere; once where they are the same float. Never for radius 0.
 ///
 /// The discriminant is r² - |l|² with l the vector from the centre to the line's nearest point, which keeps its digits
 /// for small spheres far away (Haines et al. 2019, "Precision Improvements for Ray/Sphere Intersection"); the two roots
@@ -30,12 +30,10 @@ inline SphereCandidates intersect_sphere(const Ray& ray, const SphereGeometry& s
     const double root = std::sqrt(a * discriminant);
     const double q = b < 0 ? b - root : b + root;
     const double far = q / a;
-    // (|f| - r)(|f| + r) instead of |f|² - r²: the origin may lie on the sphere.
-    const double f_length = length(f);
-    const double near = q == 0 ? 0 : (f_length - r) * (f_length + r) / q;
-    out.count = near == far ? 1 : 2;
+    const double near = q == 0 ? 0 : (dot(f, f) - r * r) / q;
     out.t[0] = static_cast<float>(near < far ? near : far);
     out.t[1] = static_cast<float>(near < far ? far : near);
+    out.count = out.t[0] == out.t[1] ? 1 : 2;
     return out;
 }
 

@@ -1,1 +1,163 @@
+// The builders on what breaks builders.
 #include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "base/parallel.h"
+#include "scenes.h"
+#include "support/support.h"
+
+namespace steradian::test {
+namespace {
+
+constexpr BvhBuilder kBuilders[] = {BvhBuilder::sah, BvhBuilder::median};
+
+TestScene scene_of(const std::string& name, TriangleMesh mesh) {
+    TestScene scene(name);
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({0, {}});
+    return scene;
+}
+
+std::vector<TestScene> abuse(int count) {
+    std::vector<TestScene> scenes;
+    TriangleMesh same, centroids, nested, points, line;
+    Random random(5);
+    for (int i = 0; i < count; ++i) {
+        same.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        // Boxes around the origin, of very different sizes, all with the same centroid.
+        const auto s = static_cast<float>(random.decades(-6, 0));
+        centroids.add({-s, -s, 0}, {s, -s, 0}, {-s, s, 0});
+        // Each one is almost all of the rest: the heuristic wants to split off one at a time.
+        const auto n = static_cast<float>(std::pow(10.0, -30 + 45.0 * i / count));
+        nested.add({0, 0, 0}, {n, 0, n}, {0, n, n});
+        const Vec3 p = random.in_cube(1);
+        points.add(p, p, p);
+        const auto x = static_cast<float>(i);
+        line.add({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0});
+    }
+    scenes.push_back(scene_of("coincident triangles", std::move(same)));
+    scenes.push_back(scene_of("coincident centroids", std::move(centroids)));
+    scenes.push_back(scene_of("exponentially nested", std::move(nested)));
+    scenes.push_back(scene_of("points", std::move(points)));
+    scenes.push_back(scene_of("a long line", std::move(line)));
+    return scenes;
+}
+
+// Time is not measured here; that the depth stays bounded, that no leaf takes more than it must and that every level
+// costs O(n) make it O(n log n). With 64 levels a tree over n always fits, so leaves hold at most 8 triangles.
+TEST(Build, AbuseStaysBoundedAndCorrect) {
+    const int count = by_tier(100'000, 1'000'000);
+    for (TestScene& scene : abuse(count)) {
+        const BruteForce brute(scene);
+        scene.finish(1);
+        const std::vector<Ray> rays = hard_rays(scene, by_tier<size_t>(10, 40), 9);
+        std::vector<Hit> expected(rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+        for (const BvhBuilder builder : kBuilders)
+            for (const uint32_t max_depth : {64u, 18u, 2u}) {
+                AccelOptions options;
+                options.builder = builder;
+                options.max_depth = max_depth;
+                const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_TRUE(accel) << accel.error().message;
+                const AccelStatistics& s = accel->statistics();
+                EXPECT_EQ(s.primitives, uint64_t(count));
+                EXPECT_LE(s.depth, max_depth);
+                if (max_depth >= 18) {  // 2^18 * 4 > count
+                    EXPECT_GE(s.leaves * 8, uint64_t(count)) << scene.name << " " << max_depth;
+                }
+                for (size_t i = 0; i < rays.size(); ++i)
+                    ASSERT_TRUE(same_bits(accel->intersect(rays[i]), expected[i]))
+                        << scene.name << " " << describe(rays[i]);
+            }
+    }
+}
+
+TEST(Build, SmallAndEmpty) {
+    const Ray ray{{0.2f, 0.2f, 1}, 0, {0, 0, -1}, kInfinity};
+    for (const BvhBuilder builder : kBuilders) {
+        AccelOptions options;
+        options.builder = builder;
+        const Result<Accel> nothing = Accel::build({}, {}, options);
+        ASSERT_TRUE(nothing);
+        EXPECT_FALSE(nothing->intersect(ray).found());
+        EXPECT_GT(nothing->bounds().lo.x, nothing->bounds().hi.x);
+        EXPECT_EQ(nothing->statistics().primitives, 0u);
+
+        TriangleMesh empty, one;
+        one.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        const Geometry geometries[] = {empty.geometry(), one.geometry(), std::span<const SphereGeometry>()};
+        const Result<Accel> unused = Accel::build(geometries, {}, options);
+        ASSERT_TRUE(unused);
+        EXPECT_FALSE(unused->occluded(ray));
+        const GeometryInstance instances[] = {{0, {}}, {2, {}}, {1, {}}};
+        const Result<Accel> accel = Accel::build(geometries, instances, options);
+        ASSERT_TRUE(accel);
+        const Hit hit = accel->intersect(ray);
+        EXPECT_EQ(hit.instance, 2u);
+        EXPECT_EQ(hit.prim, 0u);
+        EXPECT_EQ(accel->bounds().lo, Vec3(0, 0, 0));
+        EXPECT_EQ(accel->bounds().hi, Vec3(1, 1, 0));
+        EXPECT_EQ(accel->statistics().depth, 0u);
+    }
+}
+
+TEST(Build, SameForAnyNumberOfThreads) {
+    const ThreadLimit limit(7);
+    TestScene scene("soup");
+    TriangleMesh mesh;
+    Random random(8);
+    for (int i = 0; i < 80'000; ++i) {
+        const Vec3 c = random.in_cube(1);
+        mesh.add(c + random.in_cube(0.02), c + random.in_cube(0.02), c + random.in_cube(0.02));
+    }
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(3);
+    const std::vector<Ray> rays = hard_rays(scene, 3000, 10);
+    std::vector<Hit> expected;
+    for (const uint32_t threads : {1u, 2u, 7u})
+        for (const BvhBuilder builder : kBuilders)
+            with_threads(threads, [&] {
+                AccelOptions options;
+                options.builder = builder;
+                const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_TRUE(accel);
+                std::vector<Hit> hits(rays.size());
+                accel->intersect(rays, hits);
+                if (expected.empty()) expected = hits;
+                for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], expected[i]));
+            });
+}
+
+TEST(Build, Cancelled) {
+    TestScene scene = std::move(abuse(50'000)[4]);
+    for (const int after : {0, 1, 3}) {
+        std::atomic<int> asked{0}, inside{0};
+        AccelOptions options;
+        options.cancelled = [&] {
+            EXPECT_EQ(inside++, 0) << "asked by two threads at once";
+            std::this_thread::yield();
+            --inside;
+            return asked++ >= after;
+        };
+        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+        ASSERT_FALSE(accel);
+        EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
+    }
+}
+
+TEST(Build, CountsItsBytes) {
+    TestScene scene = std::move(abuse(50'000)[4]);
+    const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
+    ASSERT_TRUE(accel);
+    const AccelStatistics& s = accel->statistics();
+    // At least the nine coordinates and the id of every triangle, and the nodes.
+    EXPECT_GE(s.bytes, 50'000u * 40 + s.nodes * 128);
+    EXPECT_LE(s.bytes, 50'000u * 160 + s.nodes * 128 + 10'000);
+    EXPECT_GT(s.build_seconds, 0);
+}
+
+}  // namespace
+}  // namespace steradian::test

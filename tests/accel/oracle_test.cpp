@@ -103,9 +103,9 @@ TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {
                 for (size_t k = 0; k <= expected.size(); ++k) {
                     const Hit& wanted = k < expected.size() ? expected[k] : Hit{};
                     ASSERT_TRUE(same_bits(hit, wanted))
-                        << scenes[s].name << ", " << name_of(kVariants[v]) << ", hit " << k << " of "
-                        << expected.size() << "\nray      " << describe(ray) << "\nexpected " << describe(wanted)
-                        << "\ngot      " << describe(hit);
+                        << scenes[s].name << ", " << name_of(kVariants[v]) << ", hit " << k << " of " << expected.size()
+                        << "\nray      " << describe(ray) << "\nexpected " << describe(wanted) << "\ngot      "
+                        << describe(hit);
                     const Hit after = hit;
                     built[v].next_hit({&ray, 1}, {&after, 1}, {&hit, 1});
                 }
