@@ -10,6 +10,8 @@ add_library(steradian_options INTERFACE)
 target_compile_options(steradian_options INTERFACE
   -ffp-contract=off -fno-math-errno -fno-fast-math
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  # GCC 12 reports the strings within aggregates that are moved.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
   $<$<BOOL:${STERADIAN_WERROR}>:-Werror>)
 
 if(STERADIAN_SANITIZE)
