@@ -216,11 +216,11 @@ def knot(path, segments=256, sides=24, radius=0.17):
 
 
 def hero():
-    """A golden knot, glass and mirror balls and a winding stair of one shared box, under the sky with a sun."""
+    """A golden knot, glass and mirror balls and a curved stair of one shared box, under the sky with a sun."""
     colors = {"clay": [0.62, 0.22, 0.12], "sand": [0.75, 0.6, 0.4], "moss": [0.25, 0.4, 0.16],
               "sea": [0.1, 0.3, 0.5], "plum": [0.35, 0.12, 0.3]}
     objects = [
-        {"type": "rectangle", "center": [0, 0, 0], "half_u": [14, 0, 0], "half_v": [0, 0, -14], "material": "floor"},
+        {"type": "rectangle", "center": [0, 0, 0], "half_u": [150, 0, 0], "half_v": [0, 0, -150], "material": "floor"},
         {"type": "mesh", "path": "knot.ply", "material": "gold",
          "transform": [{"rotate": {"axis": [1, 0, 0], "angle": 62}}, {"rotate": {"axis": [0, 1, 0], "angle": -20}},
                        {"translate": [0, 0.86, 0]}]},
@@ -231,10 +231,10 @@ def hero():
         {"type": "sphere", "center": [0.05, 0.1, 1.75], "radius": 0.1, "material": "moss"},
     ]
     names = list(colors)
-    for i in range(40):
-        angle = 9 * i - 35
+    for i in range(27):
+        angle = 78 - 6 * i
         objects.append({"type": "instance", "shape": "box", "material": names[i % len(names)], "transform": [
-            {"translate": [-0.5, 0, 0.5]}, {"scale": [0.55, 0.12 + 0.055 * i, 0.3]}, {"translate": [0, 0, -2.2]},
+            {"translate": [-0.5, 0, 0.5]}, {"scale": [0.22, round(0.15 + 0.065 * i, 3), 0.5]}, {"translate": [0, 0, -2.4]},
             {"rotate": {"axis": [0, 1, 0], "angle": angle}}]})
     dump("hero.json", {
         "$schema": "../docs/scene.schema.json", "version": 1,
@@ -242,7 +242,7 @@ def hero():
         "render": {"integrator": "direct", "max_depth": 12, "spp": 256},
         "film": {"resolution": [960, 540]},
         "camera": {"position": [0, 1.55, 5.6], "look_at": [0, 0.72, 0], "vertical_fov": 30},
-        "textures": {"tiles": {"type": "checkerboard", "color0": [0.72, 0.7, 0.66], "color1": [0.22, 0.24, 0.27], "scale": [40, 40]}},
+        "textures": {"tiles": {"type": "checkerboard", "color0": [0.72, 0.7, 0.66], "color1": [0.22, 0.24, 0.27], "scale": [430, 430]}},
         "materials": {
             "floor": {"type": "diffuse", "reflectance": "tiles"},
             "gold": {"type": "mirror", "reflectance": [1.0, 0.76, 0.33]},
