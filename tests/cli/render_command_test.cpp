@@ -1,0 +1,215 @@
+// The command as a user meets it: exit codes, messages, files that appear whole or not at all.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "program.h"
+#include "steradian/image_io.h"
+
+namespace steradian::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene = R"({
+  "version": 1,
+  "render": {"spp": 4},
+  "film": {"resolution": [32, 24]},
+  "cameras": {"front": {"position": [0, 0, 5]}, "side": {"position": [5, 0, 0], "look_at": [0, 0, 0]}},
+  "materials": {"white": {"type": "diffuse", "reflectance": [0.8, 0.8, 0.8]}},
+  "objects": [{"type": "sphere", "radius": 1, "material": "white"}],
+  "lights": [{"type": "environment", "radiance": [1, 1, 1]}, {"type": "point", "position": [2, 2, 2], "flux": [50, 50, 50]}]
+})";
+
+class RenderCommand : public testing::Test {
+protected:
+    RenderCommand() { spit(folder_.file("scene.json"), kScene); }
+
+    Outcome steradian(const std::vector<std::string>& arguments) { return run(folder_, arguments); }
+    bool exists(const std::string& name) const { return fs::exists(folder_.file(name)); }
+    /// Nothing but these files is in the folder: no leftovers.
+    void expect_files(std::vector<std::string> names) const {
+        names.insert(names.end(), {"scene.json", "stdout.txt", "stderr.txt"});
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            EXPECT_NE(std::find(names.begin(), names.end(), entry.path().filename()), names.end()) << entry.path();
+    }
+    static std::string field(const std::string& json, const std::string& key) {
+        const size_t at = json.find("\"" + key + "\":");
+        if (at == std::string::npos) return "(no " + key + ")";
+        const size_t begin = json.find_first_not_of(" \"", at + key.size() + 3);
+        return json.substr(begin, json.find_first_of("\",\n", begin) - begin);
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(RenderCommand, WritesEveryFormatWithTheSamePicture) {
+    const Outcome o = steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.pfm", "-o", "a.hdr", "-o", "a.png", "--json"});
+    ASSERT_EQ(o.code, 0) << o.err;
+    for (const char* name : {"a.exr", "a.pfm"}) {
+        const auto image = read_image(folder_.file(name));
+        ASSERT_TRUE(image.ok()) << image.error().str();
+        EXPECT_EQ(image_hash(*image), field(o.out, "hash")) << name;
+    }
+    EXPECT_TRUE(exists("a.hdr") && exists("a.png"));
+    EXPECT_EQ(field(o.out, "width"), "32");
+    EXPECT_EQ(field(o.out, "complete"), "true");
+    EXPECT_EQ(field(o.out, "bad_samples"), "0");
+    expect_files({"a.exr", "a.pfm", "a.hdr", "a.png"});
+}
+
+TEST_F(RenderCommand, WithoutOutputItWritesAPngNamedLikeTheScene) {
+    EXPECT_EQ(steradian({"render", "scene.json", "-q"}).code, 0);
+    expect_files({"scene.png"});
+}
+
+TEST_F(RenderCommand, EqualPicturesAreEqualFiles) {
+    ASSERT_EQ(steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.png", "--threads", "1"}).code, 0);
+    ASSERT_EQ(steradian({"render", "scene.json", "-o", "b.exr", "-o", "b.png", "--threads", "3", "--tile-size", "5", "--bvh", "median"}).code, 0);
+    EXPECT_EQ(slurp(folder_.file("a.exr")), slurp(folder_.file("b.exr")));
+    EXPECT_EQ(slurp(folder_.file("a.png")), slurp(folder_.file("b.png")));
+}
+
+TEST_F(RenderCommand, OptionsReachThePicture) {
+    const auto hash = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"render", "scene.json", "--json", "-q"});
+        const Outcome o = steradian(options);
+        EXPECT_EQ(o.code, 0) << o.err;
+        return field(o.out, "hash");
+    };
+    const std::string plain = hash({});
+    EXPECT_EQ(plain, hash({"--spp", "4", "--size", "32x24", "--camera", "front", "--sampler", "sobol", "--seed", "0"}));
+    EXPECT_EQ(plain, hash({"--filter", "gaussian:1.5"}));
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {"--spp", "5"}, {"--size", "33x24"}, {"--camera", "side"}, {"--camera", "1"}, {"--seed", "1"}, {"--sampler", "independent"},
+             {"--filter", "box"}, {"--filter", "tent:2"}, {"--max-depth", "0"}, {"--crop", "1,1,9,9"}})
+        EXPECT_NE(plain, hash(options)) << options[0] << " " << options[1];
+}
+
+TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
+    const auto expect = [&](std::vector<std::string> arguments, const std::string& text) {
+        const Outcome o = steradian(arguments);
+        EXPECT_EQ(o.code, 2) << text << o.err;
+        EXPECT_NE((o.out + o.err).find(text), std::string::npos) << o.err << o.out;
+    };
+    expect({}, "Examples:");
+    expect({"rendre"}, "render");
+    expect({"render"}, "SCENE is required");
+    expect({"render", "scene.json", "--spp", "many"}, "--spp");
+    expect({"render", "scene.json", "--spp", "-1"}, "--spp");
+    expect({"render", "scene.json", "--spp", "0"}, "expected 1 to");
+    expect({"render", "scene.json", "--spp", "9223372036854775808"}, "expected 1 to");
+    expect({"render", "scene.json", "--size", "10"}, "WIDTHxHEIGHT");
+    expect({"render", "scene.json", "--size", "0x5"}, "at least 1");
+    expect({"render", "scene.json", "--filter", "gausian"}, "did you mean 'gaussian'?");
+    expect({"render", "scene.json", "--camera", "frnt"}, "did you mean 'front'?");
+    expect({"render", "scene.json", "--crop", "1,2,3"}, "X0,Y0,X1,Y1");
+    expect({"render", "scene.json", "--crop", "0,0,33,5"}, "leaves the picture");
+    expect({"render", "scene.json", "-o", "a.jpeg"}, "unknown picture format");
+    expect({"render", "scene.json", "-o", "a.png", "-o", "a.png"}, "given twice");
+    expect({"render", "scene.json", "--threads", "100000"}, "--threads");
+    expect_files({});
+}
+
+TEST_F(RenderCommand, HelpAndVersionExitWith0) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"render", "--help"}, {"info", "--help"}}) {
+        const Outcome o = steradian(arguments);
+        EXPECT_EQ(o.code, 0);
+        EXPECT_FALSE(o.out.empty());
+    }
+}
+
+TEST_F(RenderCommand, BadScenesExitWith3AndLeaveTheOldPictureAlone) {
+    spit(folder_.file("old.png"), "precious");
+    spit(folder_.file("bad.json"), "{\"version\": 1, \"camra\": {}}");
+    const Outcome o = steradian({"render", "bad.json", "-o", "old.png"});
+    EXPECT_EQ(o.code, 3);
+    EXPECT_EQ(o.err.rfind("bad.json:1:16: error: ", 0), 0u) << o.err;
+    EXPECT_NE(o.err.find("did you mean 'camera'?"), std::string::npos) << o.err;
+    EXPECT_EQ(slurp(folder_.file("old.png")), "precious");
+    EXPECT_EQ(steradian({"render", "missing.json"}).code, 3);
+    EXPECT_EQ(steradian({"render", "."}).code, 3);
+    EXPECT_EQ(steradian({"render", "/dev/zero"}).code, 3);
+    EXPECT_EQ(steradian({"info", "missing.exr"}).code, 3);
+    expect_files({"old.png", "bad.json"});
+}
+
+TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeRendering) {
+    fs::create_directory(folder_.file("folder.png"));
+    fs::create_symlink("nowhere/x", folder_.file("dangling.png"));
+    const auto begin = std::chrono::steady_clock::now();
+    for (const char* path : {"missing/a.png", "folder.png", "dangling.png", "/dev/full.png", "scene.json/a.png"}) {
+        const Outcome o = steradian({"render", "scene.json", "--spp", "1000000", "-o", path});
+        EXPECT_EQ(o.code, 4) << path << o.err;
+        EXPECT_NE(o.err.find(path), std::string::npos) << o.err;
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST_F(RenderCommand, AWriteThatFailsKeepsTheOldFile) {
+    spit(folder_.file("a.pfm"), "precious");
+    const Outcome o = Process(folder_, {"render", "scene.json", "--size", "200x200", "--spp", "1", "-o", "a.pfm"}, 4096).wait();
+    EXPECT_EQ(o.code, 4) << o.err;
+    EXPECT_EQ(slurp(folder_.file("a.pfm")), "precious");
+    expect_files({"a.pfm"});
+}
+
+TEST_F(RenderCommand, TooLargePicturesAreRefused) {
+    EXPECT_EQ(steradian({"render", "scene.json", "--size", "1000000x1000000"}).code, 4);
+    EXPECT_EQ(steradian({"render", "scene.json", "--size", "4294967295x1"}).code, 4);
+    EXPECT_EQ(steradian({"render", "scene.json", "--size", "99999999999x1"}).code, 2);
+}
+
+class RenderSignal : public RenderCommand, public testing::WithParamInterface<std::pair<int, int>> {};
+
+TEST_P(RenderSignal, StopsWithWhatIsDone) {
+    Process process(folder_, {"render", "scene.json", "--spp", "1000000000", "-o", "a.exr", "--json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    const auto begin = std::chrono::steady_clock::now();
+    process.send(GetParam().first);
+    const Outcome o = process.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_EQ(o.code, GetParam().second) << o.err;
+    EXPECT_EQ(field(o.out, "complete"), "false");
+    const auto image = read_image(folder_.file("a.exr"));
+    ASSERT_TRUE(image.ok()) << image.error().str();
+    EXPECT_EQ(image_hash(*image), field(o.out, "hash"));
+    EXPECT_TRUE(image->metadata.count("steradian:partial"));
+    expect_files({"a.exr"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, RenderSignal, testing::Values(std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}));
+
+TEST_F(RenderCommand, StrangeNamesWork) {
+    for (const char* name : {"with space.json", "d%20.json", "\xf0\x9f\x90\xb0.json", "\xff\xfe.json", "-dash.json"}) {
+        spit(folder_.file(name), kScene);
+        const std::string path = name[0] == '-' ? std::string("./") + name : name;
+        EXPECT_EQ(steradian({"render", path, "-o", "x.png", "--spp", "1", "-q"}).code, 0) << name;
+    }
+    const Outcome o = steradian({"render", "\x1b[31mred.json"});
+    EXPECT_EQ(o.code, 3);
+    EXPECT_EQ(o.err.find('\x1b'), std::string::npos);
+}
+
+TEST_F(RenderCommand, TheLocaleDoesNotMatter) {
+    const std::string expected = field(steradian({"render", "scene.json", "--json"}).out, "hash");
+    for (const char* locale : {"de_DE.UTF-8", "C", "tr_TR.UTF-8"}) {
+        ::setenv("LC_ALL", locale, 1);
+        EXPECT_EQ(field(steradian({"render", "scene.json", "--json"}).out, "hash"), expected);
+    }
+    ::unsetenv("LC_ALL");
+}
+
+TEST_F(RenderCommand, InfoTellsWhatIsInAScene) {
+    const Outcome o = steradian({"info", "scene.json"});
+    EXPECT_EQ(o.code, 0) << o.err;
+    for (const char* text : {"front, side", "1 point", "1 environment", "32x24"}) EXPECT_NE(o.out.find(text), std::string::npos) << o.out;
+    const Outcome json = steradian({"info", "scene.json", "--json"});
+    EXPECT_EQ(field(json.out, "objects"), "1") << json.out;
+}
+
+}  // namespace
+}  // namespace steradian::test
