@@ -241,9 +241,11 @@ TEST(Obj, VertexColoursAndOtherThingsAreCounted) {
 
 TEST(Obj, UnknownKeywordsAreBounded) {
     std::string text;
-    for (int i = 0; i < 20000; ++i)
-        text += "k" + std::to_string(i) + " 1\nusemtl m" + std::to_string(i) + "\n" +
-                (i ? "f 1 2 3\n" : "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for (int i = 0; i < 20000; ++i) {
+        const std::string n = std::to_string(i);
+        text.append("k").append(n).append(" 1\nusemtl m").append(n).append("\n");
+        text += i ? "f 1 2 3\n" : kTriangle;
+    }
     const MeshFile file = expect_ok(read_obj(text));
     EXPECT_LT(file.diagnostics.warnings().size(), 80u);
     EXPECT_EQ(warning_count(file.diagnostics, "unknown keyword"), 20000u);

@@ -105,10 +105,9 @@ void HeaderReader::read_format() {
 }
 
 void HeaderReader::read_element() {
-    const char* const begin = line_.data();
     Element element;
-    element.offset = static_cast<size_t>(begin - data_.data());
     element.name = word();
+    element.offset = static_cast<size_t>(element.name.data() - data_.data());
     if (element.name.empty()) fail(element.name, "expected the name of an element");
     for (const Element& other : header_.elements)
         if (other.name == element.name) fail(element.name, "a second element " + quoted(element.name));
@@ -165,6 +164,7 @@ Header HeaderReader::read() {
             read_property();
         else if (keyword == "end_header") {
             if (!has_format_) fail(keyword, "the header has no format line");
+            header_.end_line = static_cast<size_t>(keyword.data() - data_.data());
             header_.size = at_;
             return std::move(header_);
         } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {

@@ -30,7 +30,7 @@ struct Property {
 struct Element {
     std::string_view name;
     uint64_t count = 0;
-    size_t offset = 0;  ///< of its line, for messages
+    size_t offset = 0;  ///< of its name, for messages
     std::vector<Property> properties;
 
     bool has_lists() const;
@@ -43,6 +43,7 @@ struct Element {
 struct Header {
     Encoding encoding = Encoding::ascii;
     std::vector<Element> elements;
+    size_t end_line = 0;  ///< byte of `end_header`, for messages
     size_t size = 0;  ///< of the header in bytes: where the data begin
 };
 
