@@ -29,7 +29,7 @@ bool has_scheme(std::string_view path) {
 }
 
 Error address_error(std::string_view named) {
-    return path_error("'" + escape_for_display(named) + "' is an address, expected a path: nothing is fetched");
+    return path_error("this is an address, expected a path: nothing is fetched: " + escape_for_display(named));
 }
 
 /// Two names of one file share what was read.
@@ -37,13 +37,6 @@ std::string identity(const std::string& path) {
     std::error_code error;
     const auto canonical = std::filesystem::weakly_canonical(path, error);
     return error ? path : canonical.string();
-}
-
-float usable_ior(float ior, Diagnostics& diagnostics, const std::string& file_material) {
-    if (is_finite(ior) && ior >= 1e-3f && ior <= 1e3f) return ior;
-    diagnostics.warn("material '" + escape_for_display(file_material, 60) +
-                     "': the index of refraction (Ni) makes no sense, 1.5 is used");
-    return 1.5f;
 }
 
 }  // namespace
@@ -157,8 +150,7 @@ Result<MaterialId> Assets::convert(const MeshMaterial& from) {
     const bool glass = from.illum == 4 || from.illum == 6 || from.illum == 7 || from.illum == 9 || from.dissolve < 0.5f;
     if (glass) {
         const Rgb tint = max_component(from.transmission) > 0 ? from.transmission : Rgb{1, 1, 1};
-        return add_material(GlassMaterial{usable_ior(from.ior, loaded_.diagnostics, from.name), {1, 1, 1}, tint},
-                            from.name);
+        return add_material(GlassMaterial{from.ior, {1, 1, 1}, tint}, from.name);
     }
     if (from.illum == 3)
         return add_material(MirrorMaterial{max_component(from.specular) > 0 ? from.specular : Rgb{1, 1, 1}}, from.name);

@@ -13,8 +13,17 @@
 namespace steradian {
 namespace {
 
+Error about_file(const std::string& name, ErrorCode code, std::string message, std::string hint = {}) {
+    Error error;
+    error.code = code;
+    error.message = std::move(message);
+    error.where.file = name;
+    error.hint = std::move(hint);
+    return error;
+}
+
 Error out_of_memory(const std::string& name) {
-    return {ErrorCode::resources, "there is not enough memory to load the scene", {name, 0, 0, {}}, {}, {}};
+    return about_file(name, ErrorCode::resources, "there is not enough memory to load the scene");
 }
 
 std::string folder_of_file(const std::string& path) {
@@ -109,7 +118,7 @@ Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& optio
     const std::string message = extension.empty()
                                     ? "a scene file needs an extension that tells its format"
                                     : "unknown kind of scene file '" + escape_for_display(extension) + "'";
-    return Error{ErrorCode::bad_input, message, {path, 0, 0, {}}, {}, suggestion(extension, known)};
+    return about_file(path, ErrorCode::bad_input, message, suggestion(extension, known));
 }
 
 Result<LoadedScene> load_scene_json(std::string_view text, const std::string& name, const std::string& base_folder,

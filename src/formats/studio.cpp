@@ -56,7 +56,7 @@ void add_studio(LoadedScene& loaded, Assets& assets) {
     Rectangle key;
     key.center = Vec3(c + towards_key * (5 * ball.radius));
     key.half_u = Vec3(u * half);
-    key.half_v = Vec3(-v * half);  // half_u × half_v looks back at the model
+    key.half_v = Vec3(v * half);  // half_u × half_v looks back at the model
     const ShapeId shape = assets.add_shape(key, "key light");
     const InstanceId instance = assets.add_instance({shape, assets.default_material(true), Affine{}}, "key light");
     assets.add_light(AreaLight{instance, {7, 6.8f, 6.5f}, false, 1}, "key light");

@@ -92,6 +92,16 @@ const char* foreign_encoding(std::string_view text) {
     return nullptr;
 }
 
+Error whole_text_error(const std::string& name, ErrorCode code, std::string message, std::string hint) {
+    Error error;
+    error.code = code;
+    error.message = std::move(message);
+    error.where.file = name;
+    error.where.line = error.where.column = 1;
+    error.hint = std::move(hint);
+    return error;
+}
+
 }  // namespace
 
 std::string_view kind_name(Kind kind) noexcept {
@@ -195,18 +205,13 @@ private:
 Result<Document> Document::parse(std::string_view text, const std::string& name, uint32_t max_depth) {
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     if (text.size() > kMaxTextBytes)
-        return Error{ErrorCode::resources,
-                     "the JSON text has " + std::to_string(text.size()) + " bytes, the limit is " +
-                         std::to_string(kMaxTextBytes),
-                     {name, 0, 0, {}},
-                     {},
-                     "put large meshes into OBJ or PLY files"};
+        return whole_text_error(name, ErrorCode::resources,
+                                "the JSON text has more than the limit of " + std::to_string(kMaxTextBytes) + " bytes",
+                                "put large meshes into OBJ or PLY files");
     if (const char* encoding = foreign_encoding(text))
-        return Error{ErrorCode::bad_input,
-                     std::string("the file is encoded in ") + encoding + ", expected UTF-8",
-                     {name, 1, 1, {}},
-                     {},
-                     "save it as UTF-8"};
+        return whole_text_error(name, ErrorCode::bad_input,
+                                std::string("the file is encoded in ") + encoding + ", expected UTF-8",
+                                "save it as UTF-8");
     if (const size_t nul = text.find('\0'); nul != text.npos)
         return error_at(text, name, nul, "the file contains a NUL byte, expected text");
 

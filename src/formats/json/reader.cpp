@@ -37,7 +37,7 @@ bool inside(double x, Range range) {
 
 }  // namespace
 
-std::string quoted(std::string_view key) { return "'" + escape_for_display(key, 80) + "'"; }
+std::string quoted(std::string_view key) { return std::string("'").append(escape_for_display(key, 80)).append("'"); }
 
 std::string describe(Value value) {
     switch (value.kind()) {
@@ -242,8 +242,7 @@ Rgb ObjectReader::color_or(std::string_view key, Rgb fallback, Range range) {
 void ObjectReader::finish() const {
     for (const Slot& slot : slots_)
         if (!slot.asked)
-            source_->fail(slot.member.key_offset, quoted(slot.member.key) + " has no effect in this " + what_,
-                          "remove it");
+            source_->fail(slot.member.key_offset, quoted(slot.member.key) + " has no effect in " + what_, "remove it");
 }
 
 }  // namespace steradian::json

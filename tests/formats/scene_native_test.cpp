@@ -1,0 +1,265 @@
+// What each key of our own format means.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "formats/scene_test.h"
+
+namespace steradian::test {
+namespace {
+
+TEST(NativeScene, SilenceMeansTheDefaults) {
+    const LoadedScene loaded = load_good(scene_with(""));
+    const RenderSettings& s = loaded.settings;
+    const RenderSettings defaults;
+    EXPECT_EQ(s.width, defaults.width);
+    EXPECT_EQ(s.height, defaults.height);
+    EXPECT_EQ(s.max_depth, defaults.max_depth);
+    EXPECT_EQ(s.samples_per_pixel, defaults.samples_per_pixel);
+    EXPECT_EQ(s.filter, defaults.filter);
+    EXPECT_EQ(s.seed, 0u);
+    EXPECT_EQ(s.camera, 0u);
+    EXPECT_FALSE(s.crop);
+    EXPECT_TRUE(loaded.scene.instances.empty());
+    EXPECT_TRUE(loaded.diagnostics.empty());
+    const auto& camera = std::get<PerspectiveCamera>(loaded.scene.cameras.at(0));
+    EXPECT_EQ(camera.position, (Vec3{0, 0, 5}));
+    EXPECT_EQ(camera.look_at, (Vec3{0, 0, 0}));
+    EXPECT_EQ(camera.up, (Vec3{0, 1, 0}));
+    EXPECT_EQ(camera.vertical_fov, 40);
+}
+
+TEST(NativeScene, RenderAndFilm) {
+    const LoadedScene loaded = load_good(scene_with(R"("$schema": "x", "comment": "y",
+        "render": {"integrator": "direct", "max_depth": 0, "spp": 1e3, "sampler": "independent", "seed": 18446744073709551615, "camera": "camera"},
+        "film": {"resolution": [640, 360], "filter": {"type": "mitchell"}, "crop": [10, 20, 640, 30]})"));
+    const RenderSettings& s = loaded.settings;
+    EXPECT_EQ(s.max_depth, 0u);
+    EXPECT_EQ(s.samples_per_pixel, 1000u);
+    EXPECT_EQ(s.sampler, SamplerKind::independent);
+    EXPECT_EQ(s.seed, UINT64_MAX);
+    EXPECT_EQ(s.width, 640u);
+    EXPECT_EQ(s.height, 360u);
+    EXPECT_EQ(s.filter, (Filter{FilterKind::mitchell, 2}));
+    EXPECT_EQ(s.crop, (Crop{10, 20, 640, 30}));
+}
+
+TEST(NativeScene, FiltersHaveTheirOwnDefaultRadius) {
+    const std::pair<std::string, Filter> cases[] = {{"box", {FilterKind::box, 0.5f}},
+                                                    {"tent", {FilterKind::tent, 1}},
+                                                    {"gaussian", {FilterKind::gaussian, 1.5f}},
+                                                    {"mitchell", {FilterKind::mitchell, 2}}};
+    for (const auto& [name, filter] : cases) {
+        EXPECT_EQ(load_good(scene_with("\"film\": {\"filter\": {\"type\": \"" + name + "\"}}")).settings.filter,
+                  filter);
+        const Filter wide{filter.kind, 3};
+        EXPECT_EQ(load_good(scene_with("\"film\": {\"filter\": {\"type\": \"" + name + "\", \"radius\": 3}}"))
+                      .settings.filter,
+                  wide);
+    }
+}
+
+TEST(NativeScene, NamedCameras) {
+    const LoadedScene loaded = load_good(R"({"version": 1, "render": {"camera": "top"}, "cameras": {
+        "front": {"type": "perspective", "position": [0, 0, 5], "look_at": [0, 0, 0], "vertical_fov": 30},
+        "top": {"position": [0, 9, 0], "look_at": [0, 0, 0], "up": [0, 0, -1]}}})");
+    EXPECT_EQ(loaded.settings.camera, 1u);
+    EXPECT_EQ(loaded.scene.names.cameras, (std::vector<std::string>{"front", "top"}));
+    EXPECT_EQ(std::get<PerspectiveCamera>(loaded.scene.cameras[0]).vertical_fov, 30);
+    EXPECT_EQ(std::get<PerspectiveCamera>(loaded.scene.cameras[1]).up, (Vec3{0, 0, -1}));
+}
+
+TEST(NativeScene, Textures) {
+    const LoadedScene loaded = load_good(scene_with(R"("textures": {
+        "grey": {"type": "constant", "color": 0.25}, "red": {"type": "constant", "color": [1, 0.5, 0]},
+        "plain": {"type": "checkerboard"},
+        "checks": {"type": "checkerboard", "color0": 1, "color1": [0, 0, 1], "scale": 8, "offset": [0.5, 0.25]}})"));
+    const auto& t = loaded.scene.textures;
+    ASSERT_EQ(t.size(), 4u);
+    EXPECT_EQ(std::get<ConstantTexture>(t[0]).value, (Rgb{0.25f, 0.25f, 0.25f}));
+    EXPECT_EQ(std::get<ConstantTexture>(t[1]).value, (Rgb{1, 0.5f, 0}));
+    EXPECT_EQ(std::get<CheckerTexture>(t[2]).even, CheckerTexture{}.even);
+    const auto& checks = std::get<CheckerTexture>(t[3]);
+    EXPECT_EQ(checks.even, (Rgb{1, 1, 1}));
+    EXPECT_EQ(checks.odd, (Rgb{0, 0, 1}));
+    EXPECT_EQ(checks.scale, (Vec2{8, 8}));
+    EXPECT_EQ(checks.offset, (Vec2{0.5f, 0.25f}));
+    EXPECT_EQ(loaded.scene.names.textures, (std::vector<std::string>{"grey", "red", "plain", "checks"}));
+}
+
+TEST(NativeScene, Materials) {
+    const LoadedScene loaded =
+        load_good(scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}}, "materials": {
+        "by_name": {"type": "diffuse", "reflectance": "t"},
+        "inline": {"type": "diffuse", "reflectance": {"type": "constant", "color": 0.2}, "two_sided": true},
+        "color": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3]},
+        "refraction": {"type": "refraction", "eta": 2}, "refraction0": {"type": "refraction"},
+        "glass": {"type": "glass", "eta": 1.33, "reflectance": 0.5, "transmittance": [1, 0.5, 0.25]}, "glass0": {"type": "glass"},
+        "mirror": {"type": "mirror", "reflectance": 0.9}, "mirror0": {"type": "mirror"}})"));
+    const auto& m = loaded.scene.materials;
+    ASSERT_EQ(m.size(), 9u);
+    EXPECT_EQ(index(std::get<DiffuseMaterial>(m[0]).reflectance), 0u);
+    EXPECT_FALSE(std::get<DiffuseMaterial>(m[0]).two_sided);
+    const auto constant = [&](const Material& material) {
+        return std::get<ConstantTexture>(loaded.scene.textures[index(std::get<DiffuseMaterial>(material).reflectance)])
+            .value;
+    };
+    EXPECT_EQ(constant(m[1]), (Rgb{0.2f, 0.2f, 0.2f}));
+    EXPECT_TRUE(std::get<DiffuseMaterial>(m[1]).two_sided);
+    EXPECT_EQ(constant(m[2]), (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(std::get<RefractionMaterial>(m[3]).eta, 2);
+    EXPECT_EQ(std::get<RefractionMaterial>(m[4]).eta, 1.5f);
+    const auto& glass = std::get<GlassMaterial>(m[5]);
+    EXPECT_EQ(glass.eta, 1.33f);
+    EXPECT_EQ(glass.reflectance, (Rgb{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(glass.transmittance, (Rgb{1, 0.5f, 0.25f}));
+    EXPECT_EQ(std::get<GlassMaterial>(m[6]).eta, 1.5f);
+    EXPECT_EQ(std::get<GlassMaterial>(m[6]).reflectance, (Rgb{1, 1, 1}));
+    EXPECT_EQ(std::get<MirrorMaterial>(m[7]).reflectance, (Rgb{0.9f, 0.9f, 0.9f}));
+    EXPECT_EQ(std::get<MirrorMaterial>(m[8]).reflectance, (Rgb{1, 1, 1}));
+}
+
+TEST(NativeScene, ReflectanceAboveOneIsWarnedAboutOnce) {
+    const LoadedScene loaded =
+        load_good(scene_with("\"materials\": {\n\"a\": {\"type\": \"diffuse\", \"reflectance\": 1.5},\n"
+                             "\"b\": {\"type\": \"mirror\", \"reflectance\": 2}}"));
+    ASSERT_EQ(loaded.diagnostics.warnings().size(), 1u);
+    const Warning& warning = loaded.diagnostics.warnings()[0];
+    EXPECT_EQ(warning.count, 2u);
+    EXPECT_NE(warning.message.find("above 1"), std::string::npos);
+    EXPECT_EQ(warning.where.line, 3u);
+    EXPECT_EQ(warning.where.column, 41u);
+}
+
+TEST(NativeScene, ShapesOfObjects) {
+    const LoadedScene loaded = load_good(scene_with_object(R"(
+        {"type": "sphere", "center": [1, 2, 3], "radius": 0.5}, {"type": "sphere"},
+        {"type": "rectangle", "center": [1, 2, 3], "half_u": [2, 0, 0], "half_v": [0, 0, 3]}, {"type": "rectangle"},
+        {"type": "disk", "center": [1, 2, 3], "normal": [0, 2, 0], "radius": 4}, {"type": "disk"},
+        {"type": "mesh", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]],
+         "normals": [[0, 0, 1], [0, 0, 1], [0, 1, 1]], "uvs": [[0, 0], [1, 0], [0, 1]]})"));
+    const Scene& s = loaded.scene;
+    ASSERT_EQ(s.instances.size(), 7u);
+    const auto shape = [&](size_t i) { return s.shapes[index(s.instances[i].shape)]; };
+    EXPECT_EQ(std::get<Sphere>(shape(0)).center, (Vec3{1, 2, 3}));
+    EXPECT_EQ(std::get<Sphere>(shape(0)).radius, 0.5f);
+    EXPECT_EQ(std::get<Sphere>(shape(1)).center, (Vec3{0, 0, 0}));
+    EXPECT_EQ(std::get<Sphere>(shape(1)).radius, 1);
+    EXPECT_EQ(std::get<Rectangle>(shape(2)).half_u, (Vec3{2, 0, 0}));
+    EXPECT_EQ(std::get<Rectangle>(shape(2)).half_v, (Vec3{0, 0, 3}));
+    EXPECT_EQ(std::get<Rectangle>(shape(3)).half_v, (Vec3{0, 1, 0}));
+    EXPECT_EQ(std::get<Disk>(shape(4)).normal, (Vec3{0, 2, 0}));
+    EXPECT_EQ(std::get<Disk>(shape(4)).radius, 4);
+    EXPECT_EQ(std::get<Disk>(shape(5)).normal, (Vec3{0, 0, 1}));
+    const Mesh& mesh = s.meshes[index(std::get<MeshId>(shape(6)))];
+    EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{0, 1, 2}));
+    EXPECT_EQ(mesh.normals[2], (Vec3{0, 1, 1}));
+    EXPECT_EQ(mesh.uvs[1], (Vec2{1, 0}));
+    // Nothing was said about their looks: all share one neutral grey.
+    ASSERT_EQ(s.materials.size(), 1u);
+    const auto& grey = std::get<DiffuseMaterial>(s.materials[0]);
+    EXPECT_TRUE(grey.two_sided);
+    EXPECT_EQ(std::get<ConstantTexture>(s.textures[index(grey.reflectance)]).value, (Rgb{0.5f, 0.5f, 0.5f}));
+}
+
+TEST(NativeScene, InstancesShareOneMesh) {
+    const LoadedScene loaded = load_good(scene_with(R"("shapes": {
+        "tri": {"type": "mesh", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]},
+        "ball": {"type": "sphere", "radius": 2}, "quad": {"type": "rectangle"}, "coin": {"type": "disk"}},
+        "objects": [{"type": "instance", "shape": "tri"}, {"type": "instance", "shape": "tri", "transform": {"translate": [1, 0, 0]}},
+                    {"type": "instance", "shape": "ball"}, {"type": "instance", "shape": "ball"},
+                    {"type": "instance", "shape": "quad"}, {"type": "instance", "shape": "coin"}])"));
+    const Scene& s = loaded.scene;
+    EXPECT_EQ(s.meshes.size(), 1u);
+    EXPECT_EQ(s.shapes.size(), 4u);
+    ASSERT_EQ(s.instances.size(), 6u);
+    EXPECT_EQ(s.instances[0].shape, s.instances[1].shape);
+    EXPECT_EQ(s.instances[2].shape, s.instances[3].shape);
+    EXPECT_EQ(s.instances[1].world_from_object, translation(1, 0, 0));
+}
+
+TEST(NativeScene, ObjectsHaveNamesMaterialsAndLights) {
+    const LoadedScene loaded = load_good(scene_with(R"("materials": {"m": {"type": "mirror"}}, "objects": [
+        {"type": "sphere", "name": "one", "material": "m"}, {"type": "sphere", "material": {"type": "glass"}},
+        {"type": "disk", "name": "lamp", "light": {"type": "area", "radiance": [1, 2, 3], "two_sided": true, "light_samples": 4}},
+        {"type": "disk", "material": "m", "light": {"radiance": 5}}])"));
+    const Scene& s = loaded.scene;
+    EXPECT_EQ(s.names.instances, (std::vector<std::string>{"one", "", "lamp", ""}));
+    EXPECT_TRUE(std::holds_alternative<MirrorMaterial>(s.materials[index(s.instances[0].material)]));
+    EXPECT_TRUE(std::holds_alternative<GlassMaterial>(s.materials[index(s.instances[1].material)]));
+    ASSERT_EQ(s.lights.size(), 2u);
+    const auto& lamp = std::get<AreaLight>(s.lights[0]);
+    EXPECT_EQ(index(lamp.instance), 2u);
+    EXPECT_EQ(lamp.radiance, (Rgb{1, 2, 3}));
+    EXPECT_TRUE(lamp.two_sided);
+    EXPECT_EQ(lamp.samples, 4u);
+    const auto& other = std::get<AreaLight>(s.lights[1]);
+    EXPECT_EQ(index(other.instance), 3u);
+    EXPECT_EQ(other.radiance, (Rgb{5, 5, 5}));
+    EXPECT_FALSE(other.two_sided);
+    EXPECT_EQ(other.samples, 1u);
+    // An emitter without a material reflects nothing.
+    const auto& black = std::get<DiffuseMaterial>(s.materials[index(s.instances[2].material)]);
+    EXPECT_EQ(std::get<ConstantTexture>(s.textures[index(black.reflectance)]).value, (Rgb{0, 0, 0}));
+    EXPECT_EQ(s.instances[3].material, s.instances[0].material);
+}
+
+TEST(NativeScene, Lights) {
+    const LoadedScene loaded = load_good(scene_with(R"("objects": [{"type": "sphere", "name": "bulb"}], "lights": [
+        {"type": "point", "name": "p", "position": [1, 2, 3], "intensity": [1, 2, 3]},
+        {"type": "point", "position": [1, 2, 3], "flux": [17, 12, 5]},
+        {"type": "spot", "position": [0, 2, 0], "direction": [0, -3, 0], "intensity": 4, "inner_angle": 10, "outer_angle": 20},
+        {"type": "spot", "position": [0, 2, 0], "look_at": [3, 2, 4], "intensity": 4, "outer_angle": 30},
+        {"type": "directional", "direction": [1, -1, 0], "irradiance": 3},
+        {"type": "area", "name": "a", "object": "bulb", "radiance": 2, "two_sided": true, "light_samples": 3},
+        {"type": "environment", "radiance": [1, 2, 4], "scale": 0.5, "light_samples": 2}])"));
+    const auto& l = loaded.scene.lights;
+    ASSERT_EQ(l.size(), 7u);
+    EXPECT_EQ(loaded.scene.names.lights, (std::vector<std::string>{"p", "", "", "", "", "a", ""}));
+    EXPECT_EQ(std::get<PointLight>(l[0]).position, (Vec3{1, 2, 3}));
+    EXPECT_EQ(std::get<PointLight>(l[0]).intensity, (Rgb{1, 2, 3}));
+    const double sphere = 4 * std::numbers::pi;
+    EXPECT_EQ(std::get<PointLight>(l[1]).intensity, (Rgb{float(17 / sphere), float(12 / sphere), float(5 / sphere)}));
+    const auto& spot = std::get<SpotLight>(l[2]);
+    EXPECT_EQ(spot.direction, (Vec3{0, -3, 0}));
+    EXPECT_EQ(spot.inner_angle, 10);
+    EXPECT_EQ(spot.outer_angle, 20);
+    const auto& aimed = std::get<SpotLight>(l[3]);
+    EXPECT_EQ(aimed.direction, (Vec3{0.6f, 0, 0.8f}));
+    EXPECT_EQ(aimed.inner_angle, 20);
+    EXPECT_EQ(std::get<DirectionalLight>(l[4]).direction, (Vec3{1, -1, 0}));
+    EXPECT_EQ(std::get<DirectionalLight>(l[4]).irradiance, (Rgb{3, 3, 3}));
+    const auto& area = std::get<AreaLight>(l[5]);
+    EXPECT_EQ(index(area.instance), 0u);
+    EXPECT_EQ(area.radiance, (Rgb{2, 2, 2}));
+    EXPECT_TRUE(area.two_sided);
+    EXPECT_EQ(area.samples, 3u);
+    const auto& environment = std::get<EnvironmentLight>(l[6]);
+    EXPECT_EQ(environment.radiance, (Rgb{0.5f, 1, 2}));
+    EXPECT_FALSE(environment.image);
+    EXPECT_EQ(environment.samples, 2u);
+}
+
+/// The flux of a spot is its intensity integrated over directions; here by the midpoint rule over the cosine, with the
+/// smoothstep written out once more.
+TEST(NativeScene, TheFluxOfASpotIsItsIntegratedIntensity) {
+    for (const auto& [inner, outer] : {std::pair{10.0, 20.0}, {0.0, 90.0}, {45.0, 45.0}, {100.0, 180.0}, {0.5, 0.75}}) {
+        const LoadedScene loaded = load_good(scene_with_light(
+            "{\"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [0, 0, 1], \"flux\": 10, \"inner_angle\": " +
+            std::to_string(inner) + ", \"outer_angle\": " + std::to_string(outer) + "}"));
+        const double intensity = std::get<SpotLight>(loaded.scene.lights[0]).intensity.r;
+        const double ci = std::cos(inner * std::numbers::pi / 180), co = std::cos(outer * std::numbers::pi / 180);
+        constexpr int kSteps = 1'000'000;
+        double integral = 0;
+        for (int i = 0; i < kSteps; ++i) {
+            const double c = co + (1 - co) * (i + 0.5) / kSteps;
+            const double t = c >= ci ? 1 : (c - co) / (ci - co);
+            integral += t * t * (3 - 2 * t) * (1 - co) / kSteps;
+        }
+        EXPECT_NEAR(intensity * 2 * std::numbers::pi * integral / 10, 1, 1e-5) << inner << " " << outer;
+    }
+}
+
+}  // namespace
+}  // namespace steradian::test
