@@ -223,6 +223,11 @@ TEST(Obj, LineEndsContinuationsAndComments) {
         EXPECT_EQ(corner_positions(only_mesh(read_obj(text))), expected) << text;
 }
 
+TEST(Obj, AContinuationMayBeginALine) {
+    const Mesh mesh = only_mesh(read_obj("\\\nv 0 0 0\n \\\r\n\\\r v 1 0 0\n\\\n# v 7 7 7\nv 0 1 0\n\\\nf 1 2 3\n"));
+    EXPECT_EQ(corner_positions(mesh), (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
 TEST(Obj, VertexColoursAndOtherThingsAreCounted) {
     const MeshFile file =
         expect_ok(read_obj(triangle_and("v 0 0 0 1 0 0\nv 0 0 0 1 0 0\np 1 2\nl 1 2 3\nl 1 2\ncurv 0 1 1 2\nvp 1\nfoo "

@@ -32,7 +32,7 @@ const char* Lines::line_end(const char* from) {
 
 bool Lines::next(std::string_view& line) {
     while (at_ < end_) {
-        while (at_ < end_ && (is_blank(*at_) || is_line_end(*at_))) ++at_;
+        while (at_ < end_ && is_space(at_, end_)) ++at_;
         if (at_ == end_) return false;
         const char* const begin = at_;
         const char* stop = line_end(begin);

@@ -196,6 +196,7 @@ bool LibraryReader::read_option(Words& words) {
         if (rule->name == "-clamp") current_.map_clamp = iequals(value, "on");
         return true;
     }
+    constexpr float kLargest = 1e9f;  // so that sums with it stay finite
     std::array<float, 3> values{};
     int count = 0;
     for (; count < rule->most; ++count) {
@@ -203,7 +204,7 @@ bool LibraryReader::read_option(Words& words) {
         Words ahead = words;
         const auto value = ahead.number();
         if (!value || !ahead.more(false)) break;
-        values[static_cast<size_t>(count)] = is_finite(*value) ? *value : 0.0f;
+        values[static_cast<size_t>(count)] = clamp_to(*value, -kLargest, kLargest);
         words = ahead;
     }
     if (count < rule->least)

@@ -44,7 +44,7 @@ struct Header {
     Encoding encoding = Encoding::ascii;
     std::vector<Element> elements;
     size_t end_line = 0;  ///< byte of `end_header`, for messages
-    size_t size = 0;  ///< of the header in bytes: where the data begin
+    size_t size = 0;      ///< of the header in bytes: where the data begin
 };
 
 /// Views point into `data`. Throws ParseFailure.

@@ -49,7 +49,8 @@ public:
     Contents read() {
         const auto vertex = std::find_if(header_.elements.begin(), header_.elements.end(),
                                          [](const Element& e) { return e.name == "vertex"; });
-        if (vertex == header_.elements.end()) throw ParseFailure{header_.end_line, "the header has no element vertex", {}};
+        if (vertex == header_.elements.end())
+            throw ParseFailure{header_.end_line, "the header has no element vertex", {}};
         if (vertex->count > std::numeric_limits<uint32_t>::max())
             throw ParseFailure{vertex->offset, "more than 2^32 - 1 vertices", {}, ErrorCode::resources};
         vertices_ = vertex->count;
