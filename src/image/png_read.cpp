@@ -44,6 +44,25 @@ void on_read(png_structp png, png_bytep data, size_t size) {
     reader->position += size;
 }
 
+/// libpng takes memory for what a chunk claims to hold before it reads it: so each must be there.
+void check_chunks(const Source& source) {
+    const std::string_view bytes = source.bytes;
+    constexpr size_t kSignature = 8, kFrame = 12;  // length, type and checksum around the data
+    for (size_t at = kSignature; at != bytes.size();) {
+        if (bytes.size() - at < kFrame) source.fail("the PNG ends within a chunk", bytes.size());
+        uint64_t length = 0;
+        for (size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(bytes[at + i]);
+        const std::string_view type = bytes.substr(at + 4, 4);
+        if (length > bytes.size() - at - kFrame)
+            source.fail(fmt::format("the PNG chunk {} claims {} bytes, the file has {} left", escape_for_display(type),
+                                    length, bytes.size() - at - kFrame),
+                        at);
+        if (type == "IEND") return;
+        at += kFrame + length;
+    }
+    source.fail("the PNG ends without its last chunk", bytes.size());
+}
+
 /// The header, with everything expanded to 8 or 16 bits of grey, grey + alpha, RGB or RGBA.
 bool read_header(Reader& reader, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
@@ -133,6 +152,7 @@ struct Session {
 }  // namespace
 
 Decoded decode_png(const Source& source) {
+    check_chunks(source);
     Reader reader{source, 0, {}, {}, {}};
     const Session session(reader);
     if (!session.info) throw std::bad_alloc();

@@ -148,6 +148,15 @@ TEST(Bombs, Png) {
     expect_cheap(test::png_file(20000, 20000, 1, 3, rows), "palette without a palette");
 }
 
+TEST(Bombs, PngChunks) {
+    const std::string file = test::png_file(1, 1, 8, 0, std::string(2, '\0'));
+    for (const char* type : {"tEXt", "zTXt", "iTXt", "iCCP", "sPLT", "pCAL", "sCAL", "eXIf", "IDAT", "PLTE"}) {
+        std::string bad =
+            file.substr(0, 8 + 25) + std::string("\x7f\xff\xff\xff", 4) + type + "k" + std::string(100, '\0');
+        expect_cheap(bad, type);
+    }
+}
+
 TEST(Bombs, PngText) {
     std::string head = test::png_file(1, 1, 8, 0, std::string(2, '\0'));
     const std::string zeros(4'000'000, '\0');
