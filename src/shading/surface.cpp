@@ -19,10 +19,6 @@ struct LocalSurface {
     double slack = 0;  ///< see surface_error
 };
 
-struct LocalRay {
-    Vec3d o, d;
-};
-
 Vec3d blend(const Vec3d (&v)[3], double b0, double b1, double b2) { return v[0] * b0 + v[1] * b1 + v[2] * b2; }
 
 LocalSurface local_surface(const Mesh& mesh, const LocalRay&, const Hit& hit) {
@@ -92,13 +88,6 @@ LocalSurface local_surface(const Rectangle& r, const LocalRay&, const Hit& hit) 
 LocalSurface local_surface(const Disk& disk, const LocalRay&, const Hit& hit) {
     const DiskAxes axes = disk_axes(disk);
     return parallelogram(disk.center, axes.u, axes.v, hit);
-}
-
-/// The ray as the kernels see it.
-LocalRay local_ray(const ShadingScene::InstanceData& instance, const Ray& ray) {
-    if (instance.identity) return {ray.o, ray.d};
-    return {static_cast<Vec3>(transform_point(instance.object_from_world, ray.o)),
-            static_cast<Vec3>(transform_vector(instance.object_from_world, ray.d))};
 }
 
 /// The next float up or down from a finite one.

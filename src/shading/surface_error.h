@@ -1,6 +1,9 @@
-// How far a computed surface point may be from the surface that the ray kernels see.
+// What the ray kernels see: rays in the space of an instance, and how far a computed surface point may be from the
+// surface that they resolve.
 #pragma once
 
+#include "math/ray.h"
+#include "math/transform.h"
 #include "math/vector.h"
 #include "shading/shading_scene.h"
 
@@ -46,6 +49,16 @@ inline Vec3 surface_error(const Affine& world_from_object, const ShadingScene::I
 inline double flat_slack(double size, double reach, double cross) {
     const double magnified = size * (size * size / cross);
     return 0x1p-50 * reach + 0x1p-47 * min_of(magnified, size * 0x1p40);
+}
+
+/// A ray in an instance's space: transformed in double and rounded to float once, unless the transform is the identity.
+struct LocalRay {
+    Vec3d o, d;
+};
+inline LocalRay local_ray(const ShadingScene::InstanceData& instance, const Ray& ray) {
+    if (instance.identity) return {ray.o, ray.d};
+    return {static_cast<Vec3>(transform_point(instance.object_from_world, ray.o)),
+            static_cast<Vec3>(transform_vector(instance.object_from_world, ray.d))};
 }
 
 /// The slack of a sphere.

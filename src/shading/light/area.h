@@ -28,7 +28,7 @@ inline std::optional<LightSample> sample_kind(const AreaLight& light, const Ligh
     const auto pdf = static_cast<float>(at->pdf);
     const auto towards = Towards::from_to(from.p, at->p);
     if (!towards || !(pdf > 0) || !is_finite(pdf)) return std::nullopt;
-    const std::optional<Ray> ray = shadow_ray_to_surface(from, *at, towards->wi);
+    const std::optional<Ray> ray = shadow_ray_to_surface(from, context, light.instance, *at, towards->wi);
     if (!ray) return std::nullopt;
     return LightSample{towards->wi, light.radiance, pdf, *ray};
 }

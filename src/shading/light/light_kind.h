@@ -9,6 +9,7 @@
 
 #include "shading/light.h"
 #include "shading/shading_scene.h"
+#include "shading/surface_error.h"
 
 namespace steradian {
 
@@ -33,15 +34,27 @@ inline std::optional<Ray> shadow_ray_to_point(const SurfacePoint& from, Vec3 tar
     return Ray{o, 0, d, kShadowRayEnd};
 }
 
+/// Where, in units of its length, a ray crosses the tangent plane in a point of an instance's surface, as the kernels
+/// see that ray; not finite when it runs along the plane.
+inline double tangent_plane_distance(const LightContext& context, InstanceId id, const EmitterSample& at,
+                                     const Ray& ray) {
+    const ShadingScene::InstanceData& instance = context.scene.instances[index(id)];
+    const LocalRay local = local_ray(instance, ray);
+    if (instance.identity) return dot(at.n, at.p - local.o) / dot(at.n, local.d);
+    const Vec3d p = transform_point(instance.object_from_world, at.p);
+    const Vec3d n = transform_normal_by_inverse(context.scene.scene.instances[index(id)].world_from_object, at.n);
+    return dot(n, p - local.o) / dot(n, local.d);
+}
+
 /// Towards a point of an emitting surface with normal n. The target is moved off the surface as the origin is off its
-/// own. What is left is the rounding of d, which matters for rays that graze the light: so the ray ends where, with the
-/// direction it really has, it would reach the tangent plane in that point, if that comes first.
-inline std::optional<Ray> shadow_ray_to_surface(const SurfacePoint& from, const EmitterSample& target, Vec3 wi) {
-    const Vec3 p = static_cast<Vec3>(target.p);
-    std::optional<Ray> ray =
-        shadow_ray_to_point(from, offset_origin(p, target.p_error, static_cast<Vec3>(target.n), -wi), wi);
+/// own. What is left is the rounding of the ray, which matters where it grazes the light: so it ends where, as it
+/// really runs, it would reach the tangent plane in that point, if that comes first.
+inline std::optional<Ray> shadow_ray_to_surface(const SurfacePoint& from, const LightContext& context, InstanceId id,
+                                                const EmitterSample& at, Vec3 wi) {
+    const Vec3 target = offset_origin(static_cast<Vec3>(at.p), at.p_error, static_cast<Vec3>(at.n), -wi);
+    std::optional<Ray> ray = shadow_ray_to_point(from, target, wi);
     if (!ray) return std::nullopt;
-    const double reach = dot(target.n, target.p - Vec3d(ray->o)) / dot(target.n, Vec3d(ray->d));
+    const double reach = tangent_plane_distance(context, id, at, *ray);
     if (reach > 0 && reach < 1) ray->tmax = static_cast<float>(reach * kShadowRayEnd);
     return ray;
 }
