@@ -134,10 +134,13 @@ template <class Q>
 bool walk_geometry(const BuiltGeometry& geometry, const std::vector<TriangleBlock>& blocks, const Ray& ray,
                    const SlabRay& slab, const Scope& scope, Q& query) {
     const TriangleRay triangle_ray(ray);
+    const BlockRay block_ray(triangle_ray);
     const auto leaf = [&](uint32_t first, uint32_t count) {
         for (uint32_t b = first; b < first + count; ++b) {
             const TriangleBlock& block = blocks[b];
-            for (uint32_t lane = 0; lane < kBlock && block.prim[lane] != kNoHit; ++lane) {
+            for (uint32_t maybe = filter_block(block, block_ray); maybe; maybe &= maybe - 1) {
+                const auto lane = static_cast<uint32_t>(__builtin_ctz(maybe));
+                if (block.prim[lane] == kNoHit) break;
                 const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
                 TriangleCandidate c;
                 if (!intersect_triangle(triangle_ray, p0, p1, p2, c)) continue;
