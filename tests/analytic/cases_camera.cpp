@@ -1,0 +1,105 @@
+// Where things are in the picture: coverage, orientation, aspect, filters.
+#include <functional>
+
+#include "analytic/case.h"
+
+namespace steradian::analytic {
+namespace {
+
+/// Looks along -Z from the origin with a field of view of 90°: at z = -1 the picture's height spans y from -1 to 1.
+SceneText straight(int width, int height) {
+    return empty_scene().look({0, 0, 0}, {0, 0, -1}, 90).size(width, height).depth(0).samples(64);
+}
+
+/// Emitter in the plane z = -1 over [x0, x1] × [y0, y1].
+Object patch(double x0, double x1, double y0, double y1, Color radiance) {
+    const V3 center{(x0 + x1) / 2, (y0 + y1) / 2, -1};
+    return rectangle(center, {(x1 - x0) / 2, 0, 0}, {0, (y1 - y0) / 2, 0}, "black").set("light", emission(radiance));
+}
+
+void add_layout(std::vector<Case>& out) {
+    Case quarter = as_in_catalogue(whole("pixels_quarter_cover", "L in the central quarter, else 0",
+                                         straight(16, 16).object(patch(-0.5, 0.5, -0.5, 0.5, 2)), 0.5),
+                                   "G01_quarter_cover");
+    quarter.expected = {{0, 0, 0, 0, 0.5, false},   {4, 4, 12, 12, 2, true},  {0, 0, 16, 4, 0.0, true},
+                        {0, 12, 16, 16, 0.0, true}, {0, 4, 4, 12, 0.0, true}, {12, 4, 16, 12, 0.0, true}};
+    out.push_back(quarter);
+
+    const Color red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, white = 1.0;
+    SceneText corners = straight(16, 16)
+                            .object(patch(-1, 0, 0, 1, red))
+                            .object(patch(0, 1, 0, 1, green))
+                            .object(patch(-1, 0, -1, 0, blue))
+                            .object(patch(0, 1, -1, 0, white));
+    Case four = as_in_catalogue(whole("pixels_orientation", "red and green above blue and white", corners, 0.5),
+                                "G02_orientation");
+    four.expected = {{0, 0, 0, 0, 0.5, false},
+                     {0, 0, 8, 8, red, true},
+                     {8, 0, 16, 8, green, true},
+                     {0, 8, 8, 16, blue, true},
+                     {8, 8, 16, 16, white, true}};
+    out.push_back(four);
+
+    Case wide = as_in_catalogue(whole("pixels_aspect_2_to_1", "the left half is lit: the field of view is vertical",
+                                      straight(32, 16).object(patch(-2, 0, -1, 1, 1)), 0.5),
+                                "G03_aspect_2to1");
+    wide.expected = {{0, 0, 0, 0, 0.5, false}, {0, 0, 16, 16, 1, true}, {16, 0, 32, 16, 0.0, true}};
+    out.push_back(wide);
+    Case tall =
+        whole("pixels_aspect_1_to_2", "the upper half is lit", straight(8, 16).object(patch(-0.5, 0.5, 0, 1, 1)), 0.5);
+    tall.expected = {{0, 0, 8, 8, 1, true}, {0, 8, 8, 16, 0.0, true}};
+    out.push_back(tall);
+    // On its side: with up = +X, what is at +X is at the top of the picture, and +Y is at the left.
+    SceneText rolled = corners;
+    rolled.look({0, 0, 0}, {0, 0, -1}, 90, {1, 0, 0});
+    Case roll = whole("pixels_rolled_camera", "turned by 90°", rolled, 0.5);
+    roll.expected = {
+        {0, 0, 8, 8, green, true}, {8, 0, 16, 8, white, true}, {0, 8, 8, 16, red, true}, {8, 8, 16, 16, blue, true}};
+    out.push_back(roll);
+    // An `up` that is not perpendicular to the view gives the same picture.
+    SceneText leaning = corners;
+    leaning.look({0, 0, 0}, {0, 0, -1}, 90, {0, 0.25, -3});
+    Case lean = four;
+    lean.id = "pixels_leaning_up";
+    lean.formula = "as with an upright `up`";
+    lean.catalogue.clear();
+    lean.scene = leaning.str();
+    out.push_back(lean);
+}
+
+/// Columns of a picture of 16 across an edge that passes at a quarter of the ninth one: column i sees the emitter on
+/// the left through the filter's integral up to the edge.
+void add_filters(std::vector<Case>& out) {
+    struct Row {
+        const char* name;
+        double radius;
+        std::function<double(double)>
+            cdf;  ///< of the filter's profile, from its left end to x pixels right of the centre
+    };
+    const Row rows[] = {{"box", 0.5, [](double x) { return std::min(std::max(x + 0.5, 0.0), 1.0); }},
+                        {"box", 2, [](double x) { return std::min(std::max(x / 4 + 0.5, 0.0), 1.0); }},
+                        {"tent", 1, [](double x) { return tent_cdf(x, 1); }},
+                        {"gaussian", 1.5, [](double x) { return gaussian_cdf(x, 1.5); }},
+                        {"gaussian", 3, [](double x) { return gaussian_cdf(x, 3); }},
+                        {"mitchell", 2, [](double x) { return mitchell_cdf(x, 2); }}};
+    for (const Row& row : rows) {
+        constexpr double edge = 8.25;  // pixels from the left
+        SceneText scene = straight(16, 16).filter(row.name, row.radius).object(patch(-4, edge / 8 - 1, -4, 4, 1));
+        Case c = noisy(whole(std::string("filter_") + row.name + "_" + text_of(row.radius),
+                             "the filter's integral up to the edge, column by column", scene, 0.0));
+        c.expected.clear();
+        for (uint32_t x = 0; x < 16; ++x) c.expected.push_back({x, 0, x + 1, 16, row.cdf(edge - (x + 0.5)), false});
+        out.push_back(c);
+    }
+}
+
+}  // namespace
+
+std::vector<Case> camera_cases() {
+    std::vector<Case> out;
+    add_layout(out);
+    add_filters(out);
+    return out;
+}
+
+}  // namespace steradian::analytic
