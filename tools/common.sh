@@ -14,11 +14,13 @@ jobs() {
     echo $((cores < memory ? cores : memory))
 }
 
+log_of() { echo "$logs/$(printf '%s' "$1" | tr -c 'A-Za-z0-9\n' '-').log"; }
+
 # step NAME COMMAND...: runs the command, prints the name, how it ended and how long it took; returns its status.
 step() {
     local name=$1 log start status=0
     shift
-    log=$logs/$(printf '%s' "$name" | tr -c 'A-Za-z0-9\n' '-').log
+    log=$(log_of "$name")
     start=$(date +%s)
     printf '%-60s ' "$name"
     "$@" >"$log" 2>&1 </dev/null || status=$?

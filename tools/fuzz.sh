@@ -11,20 +11,21 @@ cd "$repository"
 seconds=${1:-20}
 artifacts=build/fuzz/artifacts
 mkdir -p "$artifacts"
-count=0 failed=0
+passed=0 failed=0
+fuzz() { "$target" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$artifacts/$name-" "$@" </dev/null; }
 while IFS= read -r target; do
     name=${target##*/fuzz_}
     corpus=fuzz/corpus/$name
-    [ -d "$corpus" ] || { echo "$name: no corpus in $corpus" && failed=1 && continue; }
-    count=$((count + 1))
     echo "== $name"
-    "$target" -runs=0 -artifact_prefix="$artifacts/$name-" "$corpus" </dev/null || failed=1
-    [ "$seconds" -eq 0 ] && continue
     # New inputs go into a folder of their own; the committed corpus stays as it is.
     found=build/fuzz/found/$name
     mkdir -p "$found"
-    "$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$artifacts/$name-" \
-        "$found" "$corpus" </dev/null || failed=1
+    if [ -d "$corpus" ] && fuzz -runs=0 "$corpus" && { [ "$seconds" -eq 0 ] || fuzz -max_total_time="$seconds" "$found" "$corpus"; }; then
+        passed=$((passed + 1))
+    else
+        echo "FAILED $name"
+        failed=$((failed + 1))
+    fi
 done < <(find build/fuzz/fuzz -type f -name 'fuzz_*' -executable | sort)
-echo "$count fuzz targets"
-[ "$count" -gt 0 ] && [ "$failed" -eq 0 ]
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
