@@ -1,0 +1,125 @@
+// steradian diff: how far two pictures are apart.
+#include <fmt/format.h>
+#include <rapidjson/prettywriter.h>
+#include <rapidjson/stringbuffer.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/text.h"
+#include "command.h"
+#include "image/compare.h"
+#include "steradian/image_io.h"
+
+namespace steradian::cli {
+namespace {
+
+constexpr int kSame = 0, kDifferent = 1, kTrouble = 2;
+
+struct DiffOptions {
+    std::string a, b, output;
+    std::optional<double> max_abs, max_mse, max_rel_mse, min_psnr;
+    bool json = false;
+};
+
+int trouble(const Error& error) {
+    (void)report(error);
+    return kTrouble;
+}
+
+/// Every bound that was given must hold; without one, every bit.
+bool within(const ImageDifference& d, const DiffOptions& options) {
+    if (!options.max_abs && !options.max_mse && !options.max_rel_mse && !options.min_psnr)
+        return d.different_pixels == 0;
+    const auto at_most = [](double value, const std::optional<double>& bound) { return !bound || value <= *bound; };
+    return at_most(d.max_abs, options.max_abs) && at_most(d.mse, options.max_mse) &&
+           at_most(d.rel_mse, options.max_rel_mse) &&
+           at_most(-d.psnr, options.min_psnr ? std::optional(-*options.min_psnr) : std::nullopt);
+}
+
+void print_text(const ImageDifference& d, bool same) {
+    std::cout << fmt::format("MSE     {:.9g}\n", d.mse);
+    std::cout << fmt::format("relMSE  {:.9g}\n", d.rel_mse);
+    std::cout << fmt::format("PSNR    {:.6g} dB\n", d.psnr);
+    std::cout << fmt::format("max     {:.9g}", d.max_abs);
+    if (d.max_abs > 0) std::cout << fmt::format(" at pixel ({}, {})", d.max_x, d.max_y);
+    std::cout << fmt::format("\npixels  {} with any bit different\n", d.different_pixels);
+    std::cout << (same ? "same" : "different") << std::endl;
+}
+
+void print_json(const ImageDifference& d, bool same) {
+    rapidjson::StringBuffer buffer;
+    rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
+    const auto number = [&](const char* key, double value) {
+        w.Key(key), std::isfinite(value) ? w.Double(value) : w.Null();
+    };
+    w.StartObject();
+    w.Key("same"), w.Bool(same);
+    number("mse", d.mse);
+    number("rel_mse", d.rel_mse);
+    number("psnr", d.psnr);
+    number("max_abs", d.max_abs);
+    w.Key("max_at"), w.StartArray(), w.Uint(d.max_x), w.Uint(d.max_y), w.EndArray();
+    w.Key("different_pixels"), w.Uint64(d.different_pixels);
+    w.EndObject();
+    std::cout << buffer.GetString() << std::endl;
+}
+
+int run_diff(const DiffOptions& options) {
+    const auto a = read_image(options.a);
+    if (!a) return trouble(a.error());
+    const auto b = read_image(options.b);
+    if (!b) return trouble(b.error());
+    const auto difference = compare_images(*a, *b);
+    if (!difference) return trouble(difference.error());
+    if (!options.output.empty()) {
+        const auto picture = difference_image(*a, *b);
+        if (!picture) return trouble(picture.error());
+        Diagnostics diagnostics;
+        const Status status = write_image(options.output, *picture, {}, &diagnostics);
+        report(diagnostics);
+        if (!status) return trouble(status.error());
+    }
+    const bool same = within(*difference, options);
+    options.json ? print_json(*difference, same) : print_text(*difference, same);
+    if (!std::cout) return trouble({ErrorCode::resources, "cannot write to standard output", {}, {}, {}});
+    return same ? kSame : kDifferent;
+}
+
+constexpr const char* kFooter =
+    "MSE is the mean of (A - B)^2 over all pixels and channels, relMSE that of (A - B)^2 / (B^2 + 0.01), PSNR is for "
+    "a\n"
+    "peak of 1. The pictures must have the same size and channels.\n"
+    "Exit code: 0 when all the given bounds hold (with none: when every bit agrees), 1 when not, 2 on trouble.\n"
+    "With --json, numbers that are not finite are null: the PSNR of equal pictures is.\n"
+    "\n"
+    "Examples:\n"
+    "  steradian diff a.exr b.exr                             are they the same bits?\n"
+    "  steradian diff a.exr reference.exr --max-rel-mse 1e-3  close enough?\n"
+    "  steradian diff a.exr b.exr --output d.exr              where are they apart?";
+
+}  // namespace
+
+void add_diff(CLI::App& app, Action& action) {
+    auto options = std::make_shared<DiffOptions>();
+    CLI::App* c =
+        app.add_subcommand("diff", "How far two pictures are apart: MSE, relMSE, PSNR, the largest difference");
+    c->footer(kFooter);
+    c->add_option("A", options->a, "A picture")->required();
+    c->add_option("B", options->b, "Another one, the reference")->required();
+    c->add_option("--output", options->output, "Write |A - B| as a picture: .exr, .hdr, .pfm or .png");
+    const auto bound = [&](const char* name, std::optional<double>& value, const char* help) {
+        c->add_option(name, value, help)->check(CLI::Number);
+    };
+    bound("--max-abs", options->max_abs, "Bound on the largest |A - B| of any channel");
+    bound("--max-mse", options->max_mse, "Bound on the MSE");
+    bound("--max-rel-mse", options->max_rel_mse, "Bound on the relMSE");
+    bound("--min-psnr", options->min_psnr, "Bound on the PSNR, in dB");
+    c->add_flag("--json", options->json, "As JSON");
+    c->callback([options, &action] { action = [options] { return run_diff(*options); }; });
+}
+
+}  // namespace steradian::cli
