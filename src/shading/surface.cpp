@@ -58,7 +58,9 @@ LocalSurface local_surface(const Sphere& sphere, const LocalRay& ray, const Hit&
     const double foot = -dot(oc, ray.d) / dd;
     const Vec3d nearest = oc + ray.d * foot;
     const double half = std::sqrt(max_of(r * r - dot(nearest, nearest), 0.0) / dd);
-    const double t = static_cast<double>(hit.t) < foot ? -half : half;
+    const double near = foot - half, far = foot + half, t_hit = hit.t;
+    const bool is_near = static_cast<float>(near) == hit.t || std::fabs(t_hit - near) < std::fabs(t_hit - far);
+    const double t = is_near ? -half : half;
     const Vec3d n = normalize(nearest + ray.d * t);
     LocalSurface out;
     out.n = n;
@@ -153,7 +155,7 @@ Vec3 offset_origin(Vec3 p, Vec3 p_error, Vec3 n, Vec3 direction) noexcept {
     Vec3 out;
     for (int i = 0; i < 3; ++i) {
         out[i] = static_cast<float>(static_cast<double>(p[i]) + move[i]);
-        if (move[i] != 0) out[i] = next_after(out[i], move[i] > 0);
+        if (n[i] != 0) out[i] = next_after(out[i], n[i] * sign > 0);
     }
     return out;
 }

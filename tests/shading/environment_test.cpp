@@ -1,0 +1,274 @@
+// The environment: orientation, interpolation, and samples that follow the stated density whatever the map.
+#include "shading/environment.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "shading/light.h"
+#include "shading/world.h"
+#include "support/chi_square.h"
+#include "support/support.h"
+
+namespace steradian {
+namespace {
+
+using test::Random;
+
+struct Sky {
+    ShadingScene shading;
+    Diagnostics diagnostics;
+};
+
+Sky sky(uint32_t width, uint32_t height, const std::vector<Rgb>& texels, float rotation = 0, Rgb scale = {1, 1, 1}) {
+    Scene scene;
+    RawImage image{width, height, 3, TexelFormat::f32, {}};
+    image.data.resize(texels.size() * sizeof(Rgb));
+    std::memcpy(image.data.data(), texels.data(), image.data.size());
+    const ImageId id = add<ImageId>(scene.images, std::move(image));
+    scene.lights.push_back(EnvironmentLight{scale, id, ColorSpace::linear, rotation, 3});
+    Sky out;
+    out.shading = std::move(make_shading_scene(std::move(scene), out.diagnostics)).value();
+    return out;
+}
+
+std::vector<Rgb> filled(uint32_t width, uint32_t height, Rgb value) {
+    return std::vector<Rgb>(size_t(width) * height, value);
+}
+
+const SurfacePoint kUp = test::receiver({}, {0, 1, 0});
+
+TEST(Environment, Orientation) {
+    // One texel each, in the middle row of 8 × 5: the centre columns are 3 and 4.
+    const auto with = [](uint32_t x0, uint32_t x1, float rotation) {
+        std::vector<Rgb> texels = filled(8, 5, {});
+        texels[2 * 8 + x0] = texels[2 * 8 + x1] = {1, 1, 1};
+        return sky(8, 5, texels, rotation);
+    };
+    const auto seen = [](const Sky& s, Vec3 d) { return environment_radiance(s.shading, d).r; };
+    const Vec3 minus_z{0, 0, -1}, plus_x{1, 0, 0}, minus_x{-1, 0, 0}, plus_z{0, 0, 1};
+    const Sky centre = with(3, 4, 0);
+    EXPECT_NEAR(seen(centre, minus_z), 1, 1e-6);
+    for (const Vec3 d : {plus_x, minus_x, plus_z}) EXPECT_NEAR(seen(centre, d), 0, 1e-6);
+    EXPECT_NEAR(seen(with(5, 6, 0), plus_x), 1, 1e-6);
+    EXPECT_NEAR(seen(with(1, 2, 0), minus_x), 1, 1e-6);
+    EXPECT_NEAR(seen(with(0, 7, 0), plus_z), 1, 1e-6);
+    // Counter-clockwise seen from above: what was at -Z comes to -X, what was at +X to -Z.
+    EXPECT_NEAR(seen(with(3, 4, 90), minus_x), 1, 1e-6);
+    EXPECT_NEAR(seen(with(5, 6, 90), minus_z), 1, 1e-6);
+    EXPECT_NEAR(seen(with(3, 4, -90), plus_x), 1, 1e-6);
+    // The top row is +Y.
+    std::vector<Rgb> top = filled(8, 5, {});
+    for (size_t x = 0; x < 8; ++x) top[x] = {1, 0, 0};
+    EXPECT_NEAR(seen(sky(8, 5, top), {0, 1, 0}), 1, 1e-6);
+    EXPECT_NEAR(seen(sky(8, 5, top), {0, -1, 0}), 0, 1e-6);
+}
+
+TEST(Environment, InterpolatesBetweenTexelCentres) {
+    const Sky s = sky(4, 2, {{1, 1, 1}, {2, 2, 2}, {4, 4, 4}, {8, 8, 8}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 0,
+                      {2, 1, 1});
+    const auto direction = [](double column, double row) {
+        const double phi = 2 * std::numbers::pi * (column / 4 - 0.5), theta = std::numbers::pi * row / 2;
+        return static_cast<Vec3>(
+            Vec3d{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)});
+    };
+    const auto at = [&](double column, double row) { return environment_radiance(s.shading, direction(column, row)); };
+    EXPECT_NEAR(at(0.5, 0.5).g, 1, 1e-5);
+    EXPECT_NEAR(at(0.5, 0.5).r, 2, 1e-5);
+    EXPECT_NEAR(at(2.5, 0.5).g, 4, 1e-5);
+    EXPECT_NEAR(at(2, 0.5).g, 3, 1e-5);
+    EXPECT_NEAR(at(0.001, 0.5).g, 4.5, 1e-2);  // wraps around
+    EXPECT_NEAR(at(3.999, 0.5).g, 4.5, 1e-2);
+    EXPECT_NEAR(at(2.5, 0.1).g, 4, 1e-5);  // continued at the pole
+    EXPECT_NEAR(at(2.5, 1).g, 2, 1e-5);
+}
+
+struct Map {
+    const char* name;
+    uint32_t width, height;
+    std::vector<Rgb> texels;
+};
+
+std::vector<Map> maps() {
+    Random random(9);
+    std::vector<Map> out;
+    out.push_back({"one texel", 1, 1, {{0.3f, 0.3f, 0.3f}}});
+    out.push_back({"one column", 1, 4, {{1, 1, 1}, {0, 0, 0}, {4, 4, 4}, {0.5f, 0, 0}}});
+    out.push_back({"one row", 5, 1, {{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, {0, 0, 0}}});
+    Map noise{"noise", 16, 8, filled(16, 8, {})};
+    for (Rgb& c : noise.texels) {
+        const float r = random.uniform(), g = random.uniform();
+        c = {r * r * 3, g * 0.1f, 0.2f};
+    }
+    out.push_back(noise);
+    Map blue{"a patch of pure blue", 12, 6, filled(12, 6, {})};
+    blue.texels[3 * 12 + 4] = {0, 0, 7};
+    out.push_back(blue);
+    Map sun{"a tiny sun", 64, 32, filled(64, 32, {0.1f, 0.1f, 0.1f})};
+    sun.texels[6 * 64 + 20] = {5e4f, 4e4f, 3e4f};
+    out.push_back(sun);
+    return out;
+}
+
+/// Quarters of texels, cut in the middle of both angles: along their borders lie all steps of the density, and where
+/// the interpolation reaches 0.
+struct Quarters {
+    const Map& map;
+    double rotation;  ///< radians
+
+    size_t count() const { return size_t(4) * map.width * map.height; }
+
+    size_t of(Vec3 d) const {
+        const double c = std::cos(rotation), s = std::sin(rotation);
+        const double x = c * d.x - s * d.z, z = s * d.x + c * d.z;
+        const double u = 0.5 + std::atan2(x, -z) / (2 * std::numbers::pi);
+        const double v = std::atan2(std::hypot(x, z), static_cast<double>(d.y)) / std::numbers::pi;
+        const auto column = min_of(static_cast<size_t>(u * 2 * map.width), size_t(2) * map.width - 1);
+        const auto row = min_of(static_cast<size_t>(v * 2 * map.height), size_t(2) * map.height - 1);
+        return row * 2 * map.width + column;
+    }
+    double theta(double row) const { return std::numbers::pi * row / (2.0 * map.height); }
+    Vec3 middle(size_t i) const {
+        const double t = theta(static_cast<double>(i / (2 * map.width)) + 0.5);
+        const double phi =
+            2 * std::numbers::pi * ((static_cast<double>(i % (2 * map.width)) + 0.5) / (2.0 * map.width) - 0.5);
+        const double x = std::sin(t) * std::sin(phi), z = -std::sin(t) * std::cos(phi);
+        const double c = std::cos(rotation), s = std::sin(rotation);
+        return static_cast<Vec3>(Vec3d{c * x + s * z, std::cos(t), c * z - s * x});
+    }
+    double solid_angle(size_t i) const {
+        const auto row = static_cast<double>(i / (2 * map.width));
+        return (std::cos(theta(row)) - std::cos(theta(row + 1))) * std::numbers::pi / map.width;
+    }
+};
+
+TEST(Environment, SamplesFollowTheDensity) {
+    const int n = test::by_tier(100000, 3000000);
+    for (const Map& map : maps())
+        for (const float rotation : {0.0f, 33.0f}) {
+            SCOPED_TRACE(map.name);
+            const Sky s = sky(map.width, map.height, map.texels, rotation);
+            const Quarters quarters{map, rotation * std::numbers::pi / 180};
+            std::vector<double> expected(quarters.count() + 1), observed(quarters.count() + 1);
+            double total = 0;
+            for (size_t i = 0; i < quarters.count(); ++i) {
+                const double p = pdf_light(s.shading, 0, kUp, quarters.middle(i), nullptr) * quarters.solid_angle(i);
+                total += p;
+                // Directions from which nothing comes are no samples.
+                expected[is_black(environment_radiance(s.shading, quarters.middle(i))) ? quarters.count() : i] += p * n;
+            }
+            EXPECT_NEAR(total, 1, 1e-6);
+            for (double& e : expected) e /= total;
+            Random random(6);
+            int mismatched = 0;
+            for (int i = 0; i < n; ++i) {
+                const uint32_t choice = random.bits32();
+                const auto l = sample_light(s.shading, 0, kUp, choice, random.uniform2());
+                const size_t cell = l ? quarters.of(l->wi) : quarters.count();
+                ++observed[expected[cell] > 0 ? cell : quarters.count()];
+                // A direction within rounding of a border between texels may be on the other side of it.
+                if (l) mismatched += !(std::fabs(pdf_light(s.shading, 0, kUp, l->wi, nullptr) / l->pdf - 1) < 1e-5f);
+            }
+            const test::ChiSquare result = test::chi_square(observed, expected);
+            EXPECT_TRUE(result.passes()) << result;
+            EXPECT_LE(mismatched, 1 + n / 10000);
+        }
+}
+
+TEST(Environment, ThereIsDensityWhereverThereIsRadiance) {
+    Random random(12);
+    for (const Map& map : maps()) {
+        const Sky s = sky(map.width, map.height, map.texels, 20);
+        for (int i = 0; i < 20000; ++i) {
+            const Vec3 d = static_cast<Vec3>(random.direction());
+            if (!is_black(environment_radiance(s.shading, d))) {
+                ASSERT_GT(pdf_light(s.shading, 0, kUp, d, nullptr), 0) << map.name;
+            }
+        }
+    }
+}
+
+/// E[radiance / pdf] is the integral of the radiance over the sphere, here by a fine midpoint rule.
+TEST(Environment, EstimatesTheIntegral) {
+    for (const Map& map : maps()) {
+        const Sky s = sky(map.width, map.height, map.texels);
+        double expected = 0;
+        const int rows = 512, columns = 1024;
+        for (int y = 0; y < rows; ++y)
+            for (int x = 0; x < columns; ++x) {
+                const double theta = std::numbers::pi * (y + 0.5) / rows,
+                             phi = 2 * std::numbers::pi * (x + 0.5) / columns;
+                const Vec3d d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+                expected += environment_radiance(s.shading, static_cast<Vec3>(d)).b * std::sin(theta);
+            }
+        expected *= 2 * std::numbers::pi * std::numbers::pi / (static_cast<double>(rows) * columns);
+        Random random(8);
+        double sum = 0, squares = 0;
+        const int n = test::by_tier(100000, 2000000);
+        for (int i = 0; i < n; ++i) {
+            const uint32_t choice = random.bits32();
+            const auto l = sample_light(s.shading, 0, kUp, choice, random.uniform2());
+            const double x = l ? l->radiance.b / l->pdf : 0;
+            sum += x, squares += x * x;
+        }
+        const double mean = sum / n, sigma = std::sqrt(max_of(squares / n - mean * mean, 0.0) / n);
+        EXPECT_NEAR(mean, expected, 4.5 * sigma + 1e-4 * expected) << map.name;
+    }
+}
+
+TEST(Environment, ConstantHasNoVariance) {
+    Scene scene;
+    scene.lights.push_back(EnvironmentLight{{2, 1, 1}, {}, ColorSpace::linear, 0, 4});
+    Diagnostics diagnostics;
+    const ShadingScene shading = std::move(make_shading_scene(std::move(scene), diagnostics)).value();
+    EXPECT_EQ(light_sample_count(shading, 0), 4u);
+    EXPECT_EQ(environment_radiance(shading, {0, 0, 1}), (Rgb{2, 1, 1}));
+    Random random(3);
+    for (int i = 0; i < 10000; ++i) {
+        const SurfacePoint from = test::receiver({}, static_cast<Vec3>(random.direction()));
+        const auto l = sample_light(shading, 0, from, 0, random.uniform2());
+        ASSERT_TRUE(l);
+        EXPECT_NEAR(l->radiance.g * dot(l->wi, from.ns) / l->pdf, std::numbers::pi, 1e-6);
+        EXPECT_EQ(pdf_light(shading, 0, from, l->wi, nullptr), l->pdf);
+        EXPECT_EQ(pdf_light(shading, 0, from, -l->wi, nullptr), 0);
+    }
+    const auto sampled = [&](uint64_t) -> std::optional<Vec3> {
+        const auto l = sample_light(shading, 0, test::receiver({}, {0, 0, 1}), 0, random.uniform2());
+        return l ? std::optional(l->wi) : std::nullopt;
+    };
+    const auto density = [&](Vec3 d) {
+        return double(pdf_light(shading, 0, test::receiver({}, {0, 0, 1}), d, nullptr));
+    };
+    const test::ChiSquare result = test::chi_square_directions(sampled, density, 50000, 10, 16);
+    EXPECT_TRUE(result.passes()) << result;
+}
+
+TEST(Environment, BlackAndBroken) {
+    const Sky black = sky(4, 2, filled(4, 2, {}));
+    EXPECT_FALSE(sample_light(black.shading, 0, kUp, 0, {0.5f, 0.5f}));
+    EXPECT_EQ(pdf_light(black.shading, 0, kUp, {0, 1, 0}, nullptr), 0);
+    EXPECT_TRUE(black.diagnostics.empty());
+
+    std::vector<Rgb> texels = filled(4, 2, {1, 1, 1});
+    texels[1].g = std::numeric_limits<float>::quiet_NaN();
+    texels[2] = {kInfinity, -kInfinity, 1};
+    texels[5].b = -4;
+    const Sky broken = sky(4, 2, texels);
+    ASSERT_EQ(broken.diagnostics.warnings().size(), 1u);
+    EXPECT_EQ(broken.diagnostics.warnings()[0].count, 3u);
+    Random random(2);
+    for (int i = 0; i < 1000; ++i) {
+        const Rgb c = environment_radiance(broken.shading, static_cast<Vec3>(random.direction()));
+        EXPECT_TRUE(is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0);
+        const auto l = sample_light(broken.shading, 0, kUp, random.bits32(), random.uniform2());
+        ASSERT_TRUE(l);
+        EXPECT_TRUE(l->pdf > 0 && is_finite(l->pdf));
+    }
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Vec3 d : {Vec3{}, Vec3{nan, 0, 0}, Vec3{kInfinity, 0, 1}})
+        EXPECT_TRUE(is_finite(environment_radiance(broken.shading, d)));
+}
+
+}  // namespace
+}  // namespace steradian
