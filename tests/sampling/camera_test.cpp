@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/hash.h"
 #include "support/chi_square.h"
 #include "support/random.h"
 
@@ -194,6 +195,21 @@ TEST(Camera, DegenerateOnesAreRefused) {
         }
     EXPECT_FALSE(CameraSampler::make(good, 0, 16).ok());
     EXPECT_FALSE(CameraSampler::make(good, 16, 0).ok());
+}
+
+TEST(CameraBits, AreWhatTheyWere) {
+    PerspectiveCamera c;
+    c.position = {0, 1, 6.8f};
+    c.look_at = {0.3f, 1, 0};
+    c.vertical_fov = 19.5f;
+    const CameraSampler camera = make(c, 640, 360);
+    Hasher hasher;
+    for (float y = 0.1f; y < 360; y += 3.3f)
+        for (float x = 0.1f; x < 640; x += 3.7f) {
+            const Vec3 d = direction(camera, x, y);
+            for (int axis = 0; axis < 3; ++axis) hasher.value(d[axis]);
+        }
+    EXPECT_EQ(hasher.hex(), "32181f8660044b9d8f176eeede067913");
 }
 
 TEST(Camera, ExtremePlacesAreFine) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/hash.h"
 #include "support/chi_square.h"
 #include "support/random.h"
 #include "support/support.h"
@@ -212,6 +213,20 @@ TEST(Filter, BoxAndTentAreTheirClosedForms) {
         EXPECT_EQ(box.sample({u, u}).weight, 1);
         EXPECT_EQ(tent.sample({u, u}).weight, 1);
     }
+}
+
+TEST(FilterBits, AreWhatTheyWere) {
+    Hasher hasher;
+    for (const Filter& f : kFilters) {
+        const FilterSampler sampler(f);
+        for (uint32_t i = 0; i < 1u << 24; i += 4099) {
+            const FilterSample s = sampler.sample({static_cast<float>(i) * 0x1p-24f, 0.7f});
+            hasher.value(s.offset.x);
+            hasher.value(s.offset.y);
+            hasher.value(s.weight);
+        }
+    }
+    EXPECT_EQ(hasher.hex(), "0076d43334d5e1f04b354e071c0d8999");
 }
 
 TEST(Filter, UsualRadii) {
