@@ -15,7 +15,7 @@ struct MeshMaterial {
     std::string name;
     Rgb diffuse{0.6f, 0.6f, 0.6f};   ///< Kd, linear
     std::string diffuse_map;         ///< map_Kd; empty: none
-    Vec2 map_scale{1, 1}, map_offset{0, 0};
+    Vec2 map_scale{1, 1}, map_offset{0, 0};  ///< uv * scale + offset, for uvs as in Mesh (v downwards)
     bool map_clamp = false;
     Rgb emission{0, 0, 0};           ///< Ke, taken as radiance
     Rgb specular{0, 0, 0};           ///< Ks
@@ -29,12 +29,12 @@ struct MeshMaterial {
 struct MeshPart {
     Mesh mesh;
     int material = -1;  ///< index into MeshFile::materials, -1: none given
-    std::string name;
+    std::string name;   ///< the material's as the file has it, defined or not; else that of the object or group
 };
 
 struct MeshFile {
     std::vector<MeshPart> parts;          ///< in order of first use; empty when the file has no faces
-    std::vector<MeshMaterial> materials;
+    std::vector<MeshMaterial> materials;  ///< those that parts use, in order of first use
     Diagnostics diagnostics;
 };
 

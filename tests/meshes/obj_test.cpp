@@ -358,7 +358,7 @@ TEST(Obj, AVeryLongLineIsShortInTheMessage) {
 
 TEST(Obj, TheFirstFaultIsReportedWhateverTheChunks) {
     std::string text;
-    for (int i = 0; i < 300; ++i) text += "v " + std::to_string(i) + " 0 0\n";
+    for (int i = 0; i < 300; ++i) text.append("v ").append(std::to_string(i)).append(" 0 0\n");
     for (int i = 0; i < 300; ++i) text += i == 100 || i == 250 ? "f 1 2 999\n" : "f 1 2 3\n";
     for (const size_t chunk : {1, 7, 64, 1000, 100000}) {
         try {

@@ -21,6 +21,14 @@ struct ParseFailure {
     ErrorCode code = ErrorCode::bad_input;
 };
 
+/// A word of the file in quotes, fit for a message.
+inline std::string quoted(std::string_view word, size_t max_bytes = 40) {
+    std::string out(1, '\'');
+    out += escape_for_display(word, max_bytes);
+    out += '\'';
+    return out;
+}
+
 /// The place of a byte in a text file.
 inline SourceLocation text_location(std::string_view text, const std::string& name, size_t offset) {
     const TextPosition at = locate(text, offset);

@@ -33,7 +33,7 @@ enum class Remark : uint8_t {
 };
 
 std::string describe(Remark kind, std::string_view word) {
-    const std::string name = word.empty() ? "others" : "'" + escape_for_display(word, 60) + "'";
+    const std::string name = word.empty() ? "others" : quoted(word, 60);
     switch (kind) {
         case Remark::unknown_keyword:
             return "unknown material keyword " + name + " ignored";

@@ -52,8 +52,6 @@ bool among(std::span<const std::string_view> words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string quoted(std::string_view word) { return "'" + escape_for_display(word, 40) + "'"; }
-
 /// Reads the lines of one chunk. Element lists are written in place, faces are kept in runs.
 class ChunkReader {
 public:

@@ -34,8 +34,6 @@ constexpr std::array<std::string_view, 8> kKeywords{"ply",     "format",   "comm
 /// Elements and properties together; real files have a few dozen. Keeps the searches for equal names short.
 constexpr size_t kMaxEntries = 4096;
 
-std::string quoted(std::string_view word) { return "'" + escape_for_display(word, 40) + "'"; }
-
 class HeaderReader {
 public:
     explicit HeaderReader(std::string_view data) : data_(data) {}
