@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "base/text.h"
 
@@ -70,6 +71,8 @@ std::vector<ExrChannel> read_channels(Cursor& cursor) {
         ExrChannel channel;
         channel.name = cursor.name();
         if (channel.name.empty()) return channels;
+        if (std::any_of(channels.begin(), channels.end(), [&](const ExrChannel& c) { return c.name == channel.name; }))
+            cursor.fail("the EXR file has two channels of one name");
         const auto type = cursor.value<int32_t>();
         if (type < 0 || type > 2) cursor.fail("a channel of the EXR file has an unknown type");
         channel.type = static_cast<ExrType>(type);
@@ -84,59 +87,96 @@ std::vector<ExrChannel> read_channels(Cursor& cursor) {
     }
 }
 
-/// What of the required attributes has been seen.
-struct Seen {
-    bool channels = false, data = false, display = false, compression = false, tiles = false;
+/// The attributes that OpenEXR may need, with their types and sizes; 0: any.
+struct Needed {
+    std::string_view name, type;
+    size_t size;
+    bool ours;  ///< we read it too, so that nothing else may stand under its name
 };
+constexpr Needed kNeeded[] = {{"channels", "chlist", 0, true},
+                              {"chunkCount", "int", 4, false},
+                              {"compression", "compression", 1, true},
+                              {"dataWindow", "box2i", 16, true},
+                              {"displayWindow", "box2i", 16, true},
+                              {"lineOrder", "lineOrder", 1, false},
+                              {"maxSamplesPerPixel", "int", 4, false},
+                              {"name", "string", 0, false},
+                              {"pixelAspectRatio", "float", 4, false},
+                              {"screenWindowCenter", "v2f", 8, false},
+                              {"screenWindowWidth", "float", 4, false},
+                              {"tiles", "tiledesc", 9, true},
+                              {"type", "string", 0, true},
+                              {"version", "int", 4, false}};
 
-void expect_type(const Cursor& value, std::string_view name, std::string_view type, std::string_view expected) {
-    if (type != expected)
-        value.fail(
-            fmt::format("the EXR attribute {} has type {}, expected {}", name, escape_for_display(type, 40), expected));
+const Needed* find_needed(std::string_view name) {
+    const auto at =
+        std::find_if(std::begin(kNeeded), std::end(kNeeded), [&](const Needed& n) { return n.name == name; });
+    return at == std::end(kNeeded) ? nullptr : at;
 }
 
-/// One attribute that we know; the others are OpenEXR's business.
-void read_attribute(std::string_view name, std::string_view type, Cursor value, ExrPart& part, Seen& seen) {
+struct Attribute {
+    std::string_view name, type;
+    Cursor value;
+};
+
+/// Whether OpenEXR may see it: an attribute that it knows, in the shape that it expects.
+bool is_needed(const Attribute& attribute) {
+    const Needed* needed = find_needed(attribute.name);
+    if (!needed) return false;
+    const bool right = attribute.type == needed->type && (!needed->size || attribute.value.left() == needed->size);
+    if (!right && needed->ours)
+        attribute.value.fail(fmt::format("the EXR attribute {} has type {} and {} bytes, which is not right for it",
+                                         attribute.name, escape_for_display(attribute.type, 40),
+                                         attribute.value.left()));
+    return right;
+}
+
+void read_type(Attribute& attribute, ExrPart& part) {
+    const std::string_view kind = attribute.value.take(attribute.value.left());
+    if (part.kind_by_flags) return;
+    const bool known = kind == "scanlineimage" || kind == "tiledimage" || kind == "deepscanline" || kind == "deeptile";
+    if (!known)
+        attribute.value.fail(fmt::format("the EXR file has a part of unknown type {}", escape_for_display(kind, 40)));
+    part.deep = kind.starts_with("deep");
+    part.tiled = kind == "tiledimage" || kind == "deeptile";
+}
+
+/// One attribute that we know.
+void read_attribute(Attribute attribute, ExrPart& part) {
+    const std::string_view name = attribute.name;
+    Cursor& value = attribute.value;
     if (name == "channels") {
-        expect_type(value, name, type, "chlist");
         part.channels = read_channels(value);
-        seen.channels = true;
-    } else if (name == "dataWindow" || name == "displayWindow") {
-        expect_type(value, name, type, "box2i");
-        (name == "dataWindow" ? part.data : part.display) = read_window(value);
-        (name == "dataWindow" ? seen.data : seen.display) = true;
+        if (value.left()) value.fail("the list of channels of the EXR file is not as long as it says");
+    } else if (name == "dataWindow") {
+        part.data = read_window(value);
+    } else if (name == "displayWindow") {
+        part.display = read_window(value);
     } else if (name == "compression") {
-        expect_type(value, name, type, "compression");
         part.compression = value.value<uint8_t>();
-        seen.compression = true;
     } else if (name == "tiles") {
-        expect_type(value, name, type, "tiledesc");
         part.tile_width = value.value<uint32_t>();
         part.tile_height = value.value<uint32_t>();
-        seen.tiles = true;
-    } else if (name == "chromaticities" && type == "chromaticities") {
+    } else if (name == "type") {
+        read_type(attribute, part);
+    } else if (name == "chromaticities" && attribute.type == "chromaticities") {
         std::array<float, 8> xy{};
         for (float& v : xy) v = value.value<float>();
         part.chromaticities = xy;
-    } else if (name == "type" && !part.kind_by_flags) {
-        expect_type(value, name, type, "string");
-        const std::string_view kind = value.take(value.left());
-        part.deep = kind.starts_with("deep");
-        part.tiled = kind == "tiledimage" || kind == "deeptile";
-    } else if (type == "string") {
+    } else if (attribute.type == "string") {
         part.strings.emplace(name, value.take(value.left()));
     }
 }
 
 /// Nothing when the list of headers ends here.
-std::optional<ExrPart> read_part(Cursor& cursor, uint32_t version) {
+std::optional<ExrPart> read_part(Cursor& cursor, uint32_t version, std::vector<std::string_view>& hidden) {
     ExrPart part;
     part.kind_by_flags = !(version & (kMultipart | kNonImage));
     part.tiled = version & kTiled;
     part.deep = version & kNonImage;
-    Seen seen;
+    std::set<std::string_view> seen;
     for (bool first = true;; first = false) {
-        const std::string name(cursor.name());
+        const std::string_view name = cursor.name();
         if (name.empty() && first) return std::nullopt;
         if (name.empty()) break;
         const std::string_view type = cursor.name();
@@ -146,14 +186,15 @@ std::optional<ExrPart> read_part(Cursor& cursor, uint32_t version) {
                                     escape_for_display(name, 80), size, cursor.left()));
         const size_t begin = cursor.position();
         cursor.take(static_cast<size_t>(size));
-        read_attribute(name, type, Cursor(cursor.source(), begin, begin + static_cast<size_t>(size)), part, seen);
+        const Attribute attribute{name, type, Cursor(cursor.source(), begin, cursor.position())};
+        if (!is_needed(attribute)) hidden.push_back(type);
+        if (!seen.insert(name).second)
+            cursor.fail(fmt::format("the EXR attribute {} is there twice", escape_for_display(name, 80)));
+        read_attribute(attribute, part);
     }
-    for (const auto& [there, name] : {std::pair(seen.channels, "channels"),
-                                      {seen.data, "dataWindow"},
-                                      {seen.display, "displayWindow"},
-                                      {seen.compression, "compression"},
-                                      {seen.tiles || !part.tiled, "tiles"}})
-        if (!there) cursor.fail(fmt::format("the EXR file has no attribute {}", name));
+    for (const char* name : {"channels", "dataWindow", "displayWindow", "compression"})
+        if (!seen.contains(name)) cursor.fail(fmt::format("the EXR file has no attribute {}", name));
+    if (part.tiled && !seen.contains("tiles")) cursor.fail("the EXR file has no attribute tiles");
     return part;
 }
 
@@ -211,21 +252,26 @@ uint64_t ExrPart::pixel_bytes() const {
     return bytes;
 }
 
-std::vector<ExrPart> scan_exr(const Source& source) {
+ExrHeaders scan_exr(const Source& source) {
     Cursor cursor(source, 0, source.bytes.size());
     if (cursor.value<uint32_t>() != 0x01312f76) source.fail("expected an EXR file", 0);
     const auto version = cursor.value<uint32_t>();
     if ((version & kVersionMask) != 2 || (version & ~(kVersionMask | kKnownFlags)) != 0)
         source.fail(fmt::format("the EXR file has version {:#x}, which is not known", version), 4);
-    std::vector<ExrPart> parts;
-    while (auto part = read_part(cursor, version)) {
+    ExrHeaders headers;
+    std::vector<std::string_view> hidden;  // the types that OpenEXR is not to know
+    while (auto part = read_part(cursor, version, hidden)) {
         check_part(source, *part);
-        parts.push_back(std::move(*part));
-        if (!(version & kMultipart)) return parts;
-        if (parts.size() > kMaxParts) source.fail_limit(fmt::format("the EXR file has more than {} parts", kMaxParts));
+        headers.parts.push_back(std::move(*part));
+        if (!(version & kMultipart)) break;
+        if (headers.parts.size() > kMaxParts)
+            source.fail_limit(fmt::format("the EXR file has more than {} parts", kMaxParts));
     }
-    if (parts.empty()) cursor.fail("the EXR file has no header");
-    return parts;
+    if (headers.parts.empty()) cursor.fail("the EXR file has no header");
+    headers.safe_bytes = source.bytes.substr(0, cursor.position());
+    for (const std::string_view type : hidden)
+        std::fill_n(headers.safe_bytes.begin() + (type.data() - source.bytes.data()), type.size(), '?');
+    return headers;
 }
 
 }  // namespace steradian::codec

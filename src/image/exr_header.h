@@ -1,5 +1,6 @@
-// The headers of an EXR file, read by ourselves: OpenEXR takes memory for whatever a header claims, so that every claim
-// is checked against the file before OpenEXR sees it.
+// The headers of an EXR file, read by ourselves: OpenEXR takes memory for whatever a header claims, and reads some
+// attributes by their content, not by their stated size. So every claim is checked against the file first, and OpenEXR
+// sees only the attributes that it needs.
 #pragma once
 
 #include <array>
@@ -45,7 +46,13 @@ struct ExrPart {
     uint64_t pixel_bytes() const;
 };
 
-/// All parts, each checked: sizes, tiles and the table of offsets can be true for a file of this length.
-std::vector<ExrPart> scan_exr(const Source& source);
+struct ExrHeaders {
+    /// All parts, each checked: sizes, tiles and the table of offsets can be true for a file of this length.
+    std::vector<ExrPart> parts;
+    /// What to show to OpenEXR in place of the beginning of the file: equal to it in length and structure, but
+    /// attributes that OpenEXR does not need have a type that it does not know, which it skips.
+    std::string safe_bytes;
+};
+ExrHeaders scan_exr(const Source& source);
 
 }  // namespace steradian::codec

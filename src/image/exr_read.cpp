@@ -18,42 +18,51 @@
 namespace steradian::codec {
 namespace {
 
+/// The file, with the headers that OpenEXR may see.
 class MemoryReader : public Imf::IStream {
 public:
-    explicit MemoryReader(const Source& source) : IStream("picture"), source_(source) {}
+    MemoryReader(const Source& source, const std::string& headers)
+        : IStream("picture"), source_(source), headers_(headers) {}
     bool read(char c[], int n) override {
-        const size_t left = source_.bytes.size() - std::min<uint64_t>(position_, source_.bytes.size());
-        if (n < 0 || static_cast<size_t>(n) > left) source_.fail("the EXR file ends early", source_.bytes.size());
-        std::memcpy(c, source_.bytes.data() + position_, static_cast<size_t>(n));
-        position_ += static_cast<uint64_t>(n);
-        return position_ < source_.bytes.size();
+        const uint64_t size = source_.bytes.size();
+        if (n < 0 || position_ > size || static_cast<uint64_t>(n) > size - position_)
+            source_.fail("the EXR file ends early", size);
+        const auto count = static_cast<size_t>(n);
+        std::memcpy(c, source_.bytes.data() + position_, count);
+        if (position_ < headers_.size())
+            std::memcpy(c, headers_.data() + position_, std::min<size_t>(count, headers_.size() - position_));
+        position_ += count;
+        return position_ < size;
     }
     uint64_t tellg() override { return position_; }
     void seekg(uint64_t position) override { position_ = position; }
 
 private:
     const Source& source_;
+    const std::string& headers_;
     uint64_t position_ = 0;
 };
 
 /// A file of which one part is read.
 class Reader {
 public:
-    explicit Reader(const Source& source) : source_(source), parts_(scan_exr(source)), stream_(source) {
+    explicit Reader(const Source& source)
+        : source_(source), headers_(scan_exr(source)), stream_(source, headers_.safe_bytes) {
+        const std::vector<ExrPart>& parts = headers_.parts;
         const auto flat = [](const ExrPart& p) { return !p.deep; };
         const auto coloured = [&](const ExrPart& p) {
             return flat(p) && ((p.find("R") && p.find("G") && p.find("B")) || p.find("Y"));
         };
-        auto at = std::find_if(parts_.begin(), parts_.end(), coloured);
-        if (at == parts_.end()) at = std::find_if(parts_.begin(), parts_.end(), flat);
-        if (at == parts_.end()) source.fail("deep pictures are not supported, expected a flat EXR file");
-        index_ = static_cast<int>(at - parts_.begin());
+        auto at = std::find_if(parts.begin(), parts.end(), coloured);
+        if (at == parts.end()) at = std::find_if(parts.begin(), parts.end(), flat);
+        if (at == parts.end()) source.fail("deep pictures are not supported, expected a flat EXR file");
+        index_ = static_cast<int>(at - parts.begin());
         const uint64_t values = part().data.width() * part().data.height() * part().channels.size();
         const uint64_t shown = part().display.width() * part().display.height() * part().channels.size();
         source.check_size(part().data.width(), part().data.height(), std::max(values, shown) * sizeof(float));
     }
 
-    const ExrPart& part() const { return parts_[static_cast<size_t>(index_)]; }
+    const ExrPart& part() const { return headers_.parts[static_cast<size_t>(index_)]; }
     const Source& source() const { return source_; }
 
     void read(const Imf::FrameBuffer& frame) {
@@ -69,7 +78,7 @@ public:
 
 private:
     const Source& source_;
-    std::vector<ExrPart> parts_;
+    ExrHeaders headers_;
     MemoryReader stream_;
     int index_ = 0;
 };

@@ -214,6 +214,14 @@ TEST(Bombs, Exr) {
     for (const std::string& type : {std::string("\0chlist\0", 8), std::string("\0chromaticities\0", 16)})
         for (const int32_t size : {0x7ffffff0, 0x10000000, -1})
             expect_cheap(patched(file, file.rfind(type) + type.size(), size), type);
+    // Attributes that say how long they are twice.
+    for (const std::string& type : {std::string("stringvector"), std::string("preview"), std::string("chlist"),
+                                    std::string("idmanifest"), std::string("string"), std::string("box2i")}) {
+        const std::string attribute =
+            "extra" + std::string(1, '\0') + type + std::string("\0\x08\0\0\0\xff\xff\xff\x7f\xff\xff\xff\x7f", 13);
+        std::string bad = file;
+        expect_cheap(bad.insert(8, attribute), type);
+    }
     const std::string tiled = tiled_exr();
     const size_t tile = tiled.find(std::string("tiledesc\0", 9)) + 9 + 4;
     for (const uint32_t side : {0u, 1u, 60000u, 0x7fffffffu, 0xffffffffu}) {
