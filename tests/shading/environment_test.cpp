@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "shading/bsdf.h"
 #include "shading/light.h"
 #include "shading/world.h"
 #include "support/chi_square.h"
@@ -232,6 +233,14 @@ TEST(Environment, ConstantHasNoVariance) {
         EXPECT_NEAR(l->radiance.g * dot(l->wi, from.ns) / l->pdf, std::numbers::pi, 1e-6);
         EXPECT_EQ(pdf_light(shading, 0, from, l->wi, nullptr), l->pdf);
         EXPECT_EQ(pdf_light(shading, 0, from, -l->wi, nullptr), 0);
+    }
+    // The back of a surface with two sides, once it is turned to the viewer.
+    const Bsdf bsdf{DiffuseBsdf{{1, 1, 1}, true}, {0, 1, 0}, Frame::from_z({0, 1, 0})};
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 wo = static_cast<Vec3>(random.direction());
+        const auto l = sample_light(shading, 0, facing(kUp, wo), 0, random.uniform2());
+        ASSERT_TRUE(l);
+        EXPECT_NEAR(l->radiance.g * eval(bsdf, wo, l->wi).f_cos.g / l->pdf, 1, 1e-6);
     }
     const auto sampled = [&](uint64_t) -> std::optional<Vec3> {
         const auto l = sample_light(shading, 0, test::receiver({}, {0, 0, 1}), 0, random.uniform2());
