@@ -17,7 +17,6 @@ namespace steradian::json {
 namespace {
 
 struct ThrowingAllocator {
-    static constexpr bool kNeedFree = true;
     void* Malloc(size_t size) { return size == 0 ? nullptr : checked(std::malloc(size)); }
     void* Realloc(void* old, size_t, size_t size) {
         if (size == 0) return Free(old), nullptr;
