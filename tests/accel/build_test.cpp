@@ -98,8 +98,8 @@ TEST(Build, SmallAndEmpty) {
         const Hit hit = accel->intersect(ray);
         EXPECT_EQ(hit.instance, 2u);
         EXPECT_EQ(hit.prim, 0u);
-        EXPECT_EQ(accel->bounds().lo, Vec3(0, 0, 0));
-        EXPECT_EQ(accel->bounds().hi, Vec3(1, 1, 0));
+        EXPECT_EQ(accel->bounds().lo, (Vec3{0, 0, 0}));
+        EXPECT_EQ(accel->bounds().hi, (Vec3{1, 1, 0}));
         EXPECT_EQ(accel->statistics().depth, 0u);
     }
 }
