@@ -41,7 +41,7 @@ render cornell_point 512x512 64
 render cornell_refraction 512x512 64
 render cornell_area 512x512 64
 render furnace_sphere 256x256 16
-render sun_sphere 512x512 64
+render sun_sphere 512x512 32
 render hero 960x540 64
 
 printf '\nThe pictures, as PNG to look at and as EXR to work with:\n'
