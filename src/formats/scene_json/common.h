@@ -83,7 +83,7 @@ Affine read_transform(const Source& source, Value value);
 /// Warns when a surface would reflect more than it receives.
 void warn_about_reflectance(const Context& context, Rgb reflectance, size_t offset);
 
-/// Whatever reads files: the extent of "path" and the place to blame for it.
+/// A file that the scene names, and the place to blame for it.
 struct NamedPath {
     std::string_view path;
     size_t offset;
