@@ -4,9 +4,9 @@
 //
 //     accel_bench [--repetitions N] [--size PIXELS] [MESH.ply | MESH.ply:SUBDIVISIONS]...
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -35,10 +35,17 @@ struct Engine {
     std::function<double(uint32_t threads)> build;  ///< seconds
 };
 
-double seconds(const std::function<void()>& work) {
-    const auto started = std::chrono::steady_clock::now();
+double clock_seconds(clockid_t clock) {
+    timespec now;
+    clock_gettime(clock, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+double seconds(uint32_t threads, const std::function<void()>& work) {
+    const clockid_t clock = threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
+    const double started = clock_seconds(clock);
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    return clock_seconds(clock) - started;
 }
 
 double median(std::vector<double> values) {
@@ -86,7 +93,7 @@ void measure_rays(const BenchMesh& mesh, const std::vector<Engine>& engines, con
                                  {std::vector<Hit>(set.rays.size()), std::vector<uint8_t>(set.rays.size())});
     for (int r = 0; r < repetitions; ++r)
         for (size_t e = 0; e < engines.size(); ++e)
-            times[e].push_back(seconds([&] { trace(engines[e], set, answers[e], threads); }));
+            times[e].push_back(seconds(threads, [&] { trace(engines[e], set, answers[e], threads); }));
     std::string row = fmt::format("| {} | {} | {} |", mesh.name, set.name, threads);
     const double ours = median(times[0]);
     for (size_t e = 0; e < engines.size(); ++e)
@@ -119,7 +126,7 @@ Engine steradian_engine(const BenchMesh& mesh, const Accel& accel, BvhBuilder bu
     engine.intersect = [&accel](std::span<const Ray> rays, std::span<Hit> hits) { accel.intersect(rays, hits); };
     engine.occluded = [&accel](std::span<const Ray> rays, std::span<uint8_t> out) { accel.occluded(rays, out); };
     engine.build = [&mesh, builder](uint32_t threads) {
-        return seconds([&] { with_threads(threads, [&] { (void)build(mesh, builder); }); });
+        return seconds(threads, [&] { with_threads(threads, [&] { (void)build(mesh, builder); }); });
     };
     return engine;
 }
@@ -129,7 +136,9 @@ Engine embree_engine(const BenchMesh& mesh, const EmbreeScene& scene, bool robus
     engine.name = robust ? "Embree robust" : "Embree";
     engine.intersect = [&scene](std::span<const Ray> rays, std::span<Hit> hits) { scene.intersect(rays, hits); };
     engine.occluded = [&scene](std::span<const Ray> rays, std::span<uint8_t> out) { scene.occluded(rays, out); };
-    engine.build = [&mesh, robust](uint32_t threads) { return EmbreeScene(mesh, robust, threads).build_seconds(); };
+    engine.build = [&mesh, robust](uint32_t threads) {
+        return seconds(threads, [&] { EmbreeScene(mesh, robust, threads); });
+    };
     return engine;
 }
 

@@ -2,7 +2,6 @@
 
 #include <embree3/rtcore.h>
 
-#include <chrono>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -12,7 +11,6 @@ namespace steradian::bench {
 struct EmbreeScene::Data {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    double build_seconds = 0;
 
     ~Data() {
         if (scene) rtcReleaseScene(scene);
@@ -24,7 +22,6 @@ EmbreeScene::EmbreeScene(const BenchMesh& mesh, bool robust, unsigned threads) :
     const std::string config = threads ? "threads=" + std::to_string(threads) : "";
     data_->device = rtcNewDevice(config.c_str());
     if (!data_->device) throw std::runtime_error("Embree does not start");
-    const auto started = std::chrono::steady_clock::now();
     data_->scene = rtcNewScene(data_->device);
     if (robust) rtcSetSceneFlags(data_->scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -38,12 +35,9 @@ EmbreeScene::EmbreeScene(const BenchMesh& mesh, bool robust, unsigned threads) :
     rtcAttachGeometry(data_->scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(data_->scene);
-    data_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 EmbreeScene::~EmbreeScene() = default;
 EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
-
-double EmbreeScene::build_seconds() const { return data_->build_seconds; }
 
 void EmbreeScene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
     for (size_t i = 0; i < rays.size(); ++i) {

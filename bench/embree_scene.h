@@ -15,8 +15,7 @@ public:
     ~EmbreeScene();
     EmbreeScene(EmbreeScene&&) noexcept;
 
-    double build_seconds() const;
-    /// One ray at a time. For any-hit queries `prim` of a hit is 0.
+    /// One ray at a time.
     void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
     void occluded(std::span<const Ray> rays, std::span<uint8_t> result) const;
 

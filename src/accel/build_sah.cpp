@@ -9,6 +9,8 @@ namespace steradian {
 namespace {
 
 constexpr uint32_t kBins = 32;
+/// Small ranges get fewer: most ranges are small, and there the bins themselves would be most of the work.
+uint32_t bins_for(size_t count) { return static_cast<uint32_t>(count < 8 * (kBins - 8) ? 8 + count / 8 : kBins); }
 /// Ranges are binned in chunks of this size, whatever the number of workers.
 constexpr size_t kChunk = 32768;
 
@@ -26,21 +28,23 @@ using Bins = std::array<std::array<Bin, kBins>, 3>;
 /// From a centroid to its bin, the same for counting and for dividing.
 class Binning {
 public:
-    explicit Binning(const Box& centroids) {
+    Binning(const Box& centroids, size_t primitives) : count_(bins_for(primitives)) {
         for (int axis = 0; axis < 3; ++axis) {
             origin_[axis] = centroids.lo[axis];
-            const float scale = float(kBins) / (centroids.hi[axis] - centroids.lo[axis]);
+            const float scale = float(count_) / (centroids.hi[axis] - centroids.lo[axis]);
             // 0 where the centroids coincide, or nearly so that the scale is infinite.
             scale_[axis] = is_finite(scale) ? scale : 0.0f;
         }
     }
+    uint32_t count() const { return count_; }
     bool usable(int axis) const { return scale_[axis] > 0; }
     uint32_t bin(const BuildPrimitive& p, int axis) const {
         const float x = (p.centroid(axis) - origin_[axis]) * scale_[axis];
-        return static_cast<uint32_t>(clamp_to(x, 0.0f, float(kBins - 1)));
+        return static_cast<uint32_t>(clamp_to(x, 0.0f, float(count_ - 1)));
     }
 
 private:
+    uint32_t count_;
     float origin_[3], scale_[3];
 };
 
@@ -84,7 +88,7 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {
 
 std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
                                        const LeafCost& leaf_cost) {
-    const Binning binning(bounds.centroids);
+    const Binning binning(bounds.centroids, primitives.size());
     Bins bins;
     count_all(primitives, binning, bins);
     std::optional<SahSplit> best;
@@ -93,12 +97,12 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
         const auto& row = bins[static_cast<size_t>(axis)];
         std::array<double, kBins> right_cost{};
         Bin side;
-        for (uint32_t i = kBins - 1; i > 0; --i) {
+        for (uint32_t i = binning.count() - 1; i > 0; --i) {
             side.extend(row[i]);
             right_cost[i] = side.box.half_area() * leaf_cost(side.count);
         }
         side = Bin{};
-        for (uint32_t i = 1; i < kBins; ++i) {
+        for (uint32_t i = 1; i < binning.count(); ++i) {
             side.extend(row[i - 1]);
             if (side.count == 0 || side.count == primitives.size()) continue;
             const double cost = side.box.half_area() * leaf_cost(side.count) + right_cost[i];
@@ -113,7 +117,7 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
 }
 
 size_t apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split) {
-    const Binning binning(bounds.centroids);
+    const Binning binning(bounds.centroids, primitives.size());
     const auto middle = std::partition(primitives.begin(), primitives.end(),
                                        [&](const BuildPrimitive& p) { return binning.bin(p, split.axis) < split.bin; });
     return static_cast<size_t>(middle - primitives.begin());
