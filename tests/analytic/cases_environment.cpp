@@ -1,4 +1,5 @@
 // Environments: constant and latitude-longitude images, seen and as light.
+#include <algorithm>
 #include <functional>
 
 #include "analytic/case.h"
@@ -22,12 +23,11 @@ struct Map {
     }
 
     /// Radiance at (s, t) in [0, 1]², interpolated between texel centres, around at the sides, continued at the poles.
-    double at(double s, double t, int channel) const {
+    Color at(double s, double t) const {
         const double fx = s * width - 0.5, fy = t * height - 0.5, x0 = std::floor(fx), y0 = std::floor(fy);
         const auto read = [&](double x, double y) {
-            const double wrapped = x < 0 ? x + width : x >= width ? x - width : x;
-            return texel(static_cast<uint32_t>(wrapped),
-                         static_cast<uint32_t>(std::min(std::max(y, 0.0), height - 1.0)))[channel];
+            const double around = x < 0 ? x + width : x >= width ? x - width : x;
+            return texel(static_cast<uint32_t>(around), static_cast<uint32_t>(std::clamp(y, 0.0, height - 1.0)));
         };
         const double wx = fx - x0, wy = fy - y0;
         return (read(x0, y0) * (1 - wx) + read(x0 + 1, y0) * wx) * (1 - wy) +
@@ -37,20 +37,29 @@ struct Map {
     /// Irradiance on a surface with normal n, the map not rotated: ∫ L cos dω, the quadrature aligned with the pieces
     /// on which the interpolation is smooth. For normals along an axis also the clamped cosine is smooth on each piece.
     Color irradiance(V3 n) const {
-        double sum[3];
-        for (int c = 0; c < 3; ++c) {
-            const auto f = [&](double s, double t) {
-                const double phi = 2 * kPi * (s - 0.5), theta = kPi * t;
+        Color sum;
+        for (uint32_t y = 0; y < 2 * height; ++y)
+            for (uint32_t x = 0; x < 2 * width; ++x) sum = sum + piece(n, 0.5 * x / width, 0.5 * y / height);
+        return sum;
+    }
+
+private:
+    /// Three by three nodes of Gauss and Legendre on a quarter of a texel.
+    Color piece(V3 n, double s0, double t0) const {
+        static constexpr double kNode[] = {-0.774596669241483377, 0, 0.774596669241483377},
+                                kWeight[] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+        const double hs = 0.25 / width, ht = 0.25 / height;
+        Color sum;
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const double s = s0 + hs * (1 + kNode[i]), t = t0 + ht * (1 + kNode[j]), phi = 2 * kPi * (s - 0.5),
+                             theta = kPi * t;
                 const V3 d{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
-                return at(s, t, c) * std::max(0.0, dot(d, n)) * std::sin(theta) * 2 * kPi * kPi;
-            };
-            sum[c] = 0;
-            for (uint32_t y = 0; y < 2 * height; ++y)
-                for (uint32_t x = 0; x < 2 * width; ++x)
-                    sum[c] += integrate(f, 0.5 * x / width, 0.5 * (x + 1) / width, 0.5 * y / height,
-                                        0.5 * (y + 1) / height, 1);
-        }
-        return {sum[0], sum[1], sum[2]};
+                // dω = sin θ dθ dφ = 2π² sin θ ds dt
+                sum = sum + at(s, t) * (kWeight[i] * kWeight[j] * hs * ht * std::max(0.0, dot(d, n)) * std::sin(theta) *
+                                        2 * kPi * kPi);
+            }
+        return sum;
     }
 };
 

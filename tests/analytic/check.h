@@ -53,8 +53,7 @@ struct Judgement {
 };
 Judgement judge(const Case& c);
 
-inline constexpr double kArithmetic = 1e-5;             ///< relative error of what has no variance
-inline constexpr double kStandardErrorBound = 0.00025;  ///< of the value
+inline constexpr double kArithmetic = 1e-5;  ///< relative error of what has no variance
 inline constexpr double kDeviations = 4;
 
 }  // namespace steradian::analytic
