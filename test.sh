@@ -81,7 +81,7 @@ quick() {
     run_tests 'Tests of the parsers with these checks' asan --tests-regex "^($(IFS='|' && echo "${sanitized_quickly[*]}"))\\."
 }
 # The layers that read foreign bytes, and what they stand on.
-sanitized_quickly=(base math image formats)
+sanitized_quickly=(base math image formats meshes)
 
 all() {
     export STERADIAN_TEST_ALL=1
