@@ -55,6 +55,9 @@ std::vector<Case> camera_cases();
 std::vector<Case> transform_cases();
 std::vector<Case> all_cases();
 
+/// A line of the table in docs/verification.md, without its newline.
+std::string table_row(const Case& c);
+
 // --- What most cases look at: the origin of a floor of reflectance 1/2 in the plane y = 0 ---------------------------
 
 inline constexpr V3 kUp{0, 1, 0};

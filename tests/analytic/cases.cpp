@@ -1,5 +1,7 @@
 #include "analytic/case.h"
 
+#include <array>
+#include <charconv>
 #include <iterator>
 
 namespace steradian::analytic {
@@ -39,6 +41,37 @@ std::vector<Case> all_cases() {
         std::vector<Case> cases = family();
         out.insert(out.end(), std::make_move_iterator(cases.begin()), std::make_move_iterator(cases.end()));
     }
+    return out;
+}
+
+namespace {
+
+std::string six_digits(double value) {
+    std::array<char, 32> buffer;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6);
+    return {buffer.data(), end.ptr};
+}
+
+}  // namespace
+
+std::string table_row(const Case& c) {
+    const Color v = c.expected[0].value;
+    std::string value = "by region";
+    if (c.expected.size() == 1) {
+        value = six_digits(v.r);
+        if (v.g != v.r || v.b != v.r)
+            for (const double channel : {v.g, v.b}) {
+                value += ' ';
+                value += six_digits(channel);
+            }
+    }
+    std::string out = "| `";
+    for (const std::string& cell :
+         {c.id + "`", value, std::string(c.kind == CaseClass::zero_variance ? "exact" : "statistics"), c.formula}) {
+        out += cell;
+        out += " | ";
+    }
+    out.pop_back();
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "analytic/check.h"
+#include "support/support.h"
 
 namespace steradian::analytic {
 namespace {
@@ -32,6 +33,13 @@ TEST(ClosedForms, TransformsAndScales) { expect_all(transform_cases()); }
 TEST(ClosedForms, HaveUniqueNames) {
     std::set<std::string> ids;
     for (const Case& c : all_cases()) EXPECT_TRUE(ids.insert(c.id).second) << c.id;
+}
+
+/// `analytic_scenes OUT_DIR` writes the table to OUT_DIR/cases.md.
+TEST(ClosedForms, AreListedInTheDocumentation) {
+    const std::string text = test::slurp(test::source_folder() / "docs/verification.md");
+    for (const Case& c : all_cases())
+        EXPECT_NE(text.find("\n" + table_row(c) + "\n"), std::string::npos) << "missing: " << table_row(c);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Writes the scenes with known pictures, the images they refer to, and cases.json with what must come out of them:
+// Writes the scenes with known pictures, the images they refer to, cases.json with what must come out of them, and the
+// same as the table of docs/verification.md in cases.md:
 //   analytic_scenes OUT_DIR
 #include <cstdio>
 #include <filesystem>
@@ -58,7 +59,7 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 int write_all(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
-    std::string list = "[\n";
+    std::string list = "[\n", table = "| case | value | class | from |\n| --- | --- | --- | --- |\n";
     std::set<std::string> written;
     const std::vector<Case> cases = all_cases();
     for (const Case& c : cases) {
@@ -68,12 +69,15 @@ int write_all(const std::filesystem::path& folder) {
             if (const Status status = write_image((folder / file.name).string(), file.image); !status)
                 throw std::runtime_error(status.error().str());
         }
+        table += table_row(c);
+        table += '\n';
         list += "  ";
         list += entry(c);
         list += &c == &cases.back() ? "\n" : ",\n";
     }
     list += "]\n";
     write_text(folder / "cases.json", list);
+    write_text(folder / "cases.md", table);
     std::printf("%zu scenes and cases.json in %s\n", cases.size(), folder.c_str());
     return 0;
 }
