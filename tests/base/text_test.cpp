@@ -131,7 +131,7 @@ TEST(ParseDouble, AgreesWithStrtod) {
         for (unsigned n = 1 + random() % 20; n-- > 0;) text += static_cast<char>('0' + random() % 10);
         text += '.';
         for (unsigned n = random() % 20; n-- > 0;) text += static_cast<char>('0' + random() % 10);
-        text += "e" + std::to_string(static_cast<int>(random() % 800) - 400);
+        text.append("e").append(std::to_string(static_cast<int>(random() % 800) - 400));
         const double expected = std::strtod(text.c_str(), nullptr);
         const auto value = parse_double(text);
         ASSERT_TRUE(value) << text;
