@@ -262,6 +262,9 @@ int run_render(RenderOptions o) {
     return signal != 0 ? 128 + signal : kDone;
 }
 
+/// CLI11 reads "-1" as a huge unsigned number.
+std::string not_negative(const std::string& text) { return text.starts_with('-') ? "must not be negative" : ""; }
+
 template <class Kind>
 CLI::IsMember one_of() {
     const auto names = names_of<Kind>();
@@ -281,15 +284,15 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("--exposure", o->write.exposure, "Stops, for PNG (+1: twice as bright)")->check(CLI::Range(-100.0, 100.0))->group("Output");
     std::vector<std::string> views(view_names().begin(), view_names().end());
     c->add_option("--view", o->write.view, "View transform for PNG")->check(CLI::IsMember(views))->capture_default_str()->group("Output");
-    c->add_option("--spp", o->spp, "Samples per pixel; the noise falls with their square root")->group("Picture");
+    c->add_option("--spp", o->spp, "Samples per pixel; the noise falls with their square root")->check(not_negative)->group("Picture");
     c->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->group("Picture");
     c->add_option("--crop", o->crop, "X0,Y0,X1,Y1: render only these pixels (X1, Y1 not included), with the same bits as in the whole\npicture; 'all' undoes the scene's crop")->group("Picture");
     c->add_option("--camera", o->camera, "Name or number of the camera")->group("Picture");
     c->add_option("--integrator", o->integrator, "How light is computed: direct")->check(one_of<IntegratorKind>())->group("Picture");
-    c->add_option("--max-depth", o->max_depth, "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")->group("Picture");
+    c->add_option("--max-depth", o->max_depth, "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")->check(not_negative)->group("Picture");
     c->add_option("--filter", o->filter, "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")->group("Picture");
     c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")->check(one_of<SamplerKind>())->group("Picture");
-    c->add_option("--seed", o->seed, "Another seed gives another, equally good noise pattern")->group("Picture");
+    c->add_option("--seed", o->seed, "Another seed gives another, equally good noise pattern")->check(not_negative)->group("Picture");
     c->add_option("--threads", o->execution.threads, "0: all the machine has; never changes the picture")->check(CLI::Range(0, 1024))->group("Execution");
     c->add_option("--tile-size", o->execution.tile_size, "Pixels, 1 to 256; never changes the picture")->check(CLI::Range(1, 256))->capture_default_str()->group("Execution");
     c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")->check(one_of<BvhBuilder>())->capture_default_str()->group("Execution");

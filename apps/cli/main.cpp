@@ -1,9 +1,14 @@
 // The steradian command: picks the subcommand, maps every failure to its exit code.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <optional>
+#include <string_view>
+#include <vector>
 
+#include "base/text.h"
 #include "command.h"
 #include "steradian/version.h"
 
@@ -26,6 +31,15 @@ constexpr const char* kExamples =
     "Each command has its own help: steradian render --help\n"
     "Exit codes: 0 done, 1 render failed, 2 usage, 3 bad scene or image, 4 disk, memory or a limit, 130/143 stopped.";
 
+/// CLI11 would only say that a subcommand is required.
+std::optional<Error> unknown_command(const CLI::App& app, std::string_view word) {
+    if (word.starts_with('-')) return std::nullopt;
+    std::vector<std::string_view> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
+    return make_error(ErrorCode::usage, "unknown command '" + escape_for_display(word) + "'", suggestion(word, names));
+}
+
 int run(int argc, char** argv) {
     CLI::App app{kAbout, "steradian"};
     app.footer(kExamples);
@@ -40,6 +54,7 @@ int run(int argc, char** argv) {
         std::cout << app.help();
         return kUsage;
     }
+    if (const auto wrong = unknown_command(app, argv[1])) return report(*wrong);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -18,7 +18,7 @@ constexpr const char* kScene = R"({
   "version": 1,
   "render": {"spp": 4},
   "film": {"resolution": [32, 24]},
-  "cameras": {"front": {"position": [0, 0, 5]}, "side": {"position": [5, 0, 0], "look_at": [0, 0, 0]}},
+  "cameras": {"front": {"position": [0, 0, 5], "look_at": [0, 0, 0]}, "side": {"position": [5, 0, 0], "look_at": [0, 0, 0]}},
   "materials": {"white": {"type": "diffuse", "reflectance": [0.8, 0.8, 0.8]}},
   "objects": [{"type": "sphere", "radius": 1, "material": "white"}],
   "lights": [{"type": "environment", "radiance": [1, 1, 1]}, {"type": "point", "position": [2, 2, 2], "flux": [50, 50, 50]}]
@@ -96,10 +96,10 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
         EXPECT_NE((o.out + o.err).find(text), std::string::npos) << o.err << o.out;
     };
     expect({}, "Examples:");
-    expect({"rendre"}, "render");
+    expect({"rendre"}, "did you mean 'render'?");
     expect({"render"}, "SCENE is required");
     expect({"render", "scene.json", "--spp", "many"}, "--spp");
-    expect({"render", "scene.json", "--spp", "-1"}, "--spp");
+    expect({"render", "scene.json", "--spp", "-1"}, "--spp: must not be negative");
     expect({"render", "scene.json", "--spp", "0"}, "expected 1 to");
     expect({"render", "scene.json", "--spp", "9223372036854775808"}, "expected 1 to");
     expect({"render", "scene.json", "--size", "10"}, "WIDTHxHEIGHT");
@@ -141,8 +141,8 @@ TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeRendering) {
     fs::create_directory(folder_.file("folder.png"));
     fs::create_symlink("nowhere/x", folder_.file("dangling.png"));
     const auto begin = std::chrono::steady_clock::now();
-    for (const char* path : {"missing/a.png", "folder.png", "dangling.png", "/dev/full.png", "scene.json/a.png"}) {
-        const Outcome o = steradian({"render", "scene.json", "--spp", "1000000", "-o", path});
+    for (const char* path : {"missing/a.png", "folder.png", "dangling.png", "scene.json/a.png"}) {
+        const Outcome o = steradian({"render", "scene.json", "--spp", "100000", "-o", path});
         EXPECT_EQ(o.code, 4) << path << o.err;
         EXPECT_NE(o.err.find(path), std::string::npos) << o.err;
     }
