@@ -37,7 +37,9 @@ void grow(SceneSummary& s, Vec3 p) {
 /// World bounds by the corners of each shape's own box: exact for boxes, slightly large for rotated ones.
 void grow(SceneSummary& s, const Instance& instance, Vec3 lo, Vec3 hi) {
     for (int corner = 0; corner < 8; ++corner)
-        grow(s, Vec3(transform_point(instance.world_from_object, Vec3{corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z})));
+        grow(s,
+             Vec3(transform_point(instance.world_from_object,
+                                  Vec3{corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z})));
 }
 
 SceneSummary summarize(const Scene& scene) {
@@ -86,21 +88,34 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
     const RenderSettings& r = loaded.settings;
     std::cout << fmt::format("{}: a scene\n", escape_for_display(path, 4096));
     std::cout << fmt::format("  hash       {}\n", scene_hash(scene));
-    std::cout << fmt::format("  objects    {} ({} shapes, {} meshes)\n", scene.instances.size(), scene.shapes.size(), scene.meshes.size());
-    std::cout << fmt::format("  triangles  {} stored, {} placed, {} vertices\n", s.triangles, s.placed_triangles, s.vertices);
+    std::cout << fmt::format("  objects    {} ({} shapes, {} meshes)\n", scene.instances.size(), scene.shapes.size(),
+                             scene.meshes.size());
+    std::cout << fmt::format("  triangles  {} stored, {} placed, {} vertices\n", s.triangles, s.placed_triangles,
+                             s.vertices);
     if (s.lo.x <= s.hi.x)
-        std::cout << fmt::format("  bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", s.lo.x, s.lo.y, s.lo.z, s.hi.x, s.hi.y, s.hi.z);
-    std::cout << fmt::format("  materials  {}, textures {}, images {}\n", scene.materials.size(), scene.textures.size(), scene.images.size());
+        std::cout << fmt::format("  bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", s.lo.x,
+                                 s.lo.y, s.lo.z, s.hi.x, s.hi.y, s.hi.z);
+    std::cout << fmt::format("  materials  {}, textures {}, images {}\n", scene.materials.size(), scene.textures.size(),
+                             scene.images.size());
     std::cout << fmt::format("  lights     {}", scene.lights.size());
     for (size_t kind = 0; kind < std::variant_size_v<Light>; ++kind) {
-        const auto n = std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; });
-        if (n) std::cout << fmt::format(", {} {}", n, kind_of(*std::find_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; })));
+        const auto n =
+            std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; });
+        if (n)
+            std::cout << fmt::format(", {} {}", n,
+                                     kind_of(*std::find_if(scene.lights.begin(), scene.lights.end(),
+                                                           [&](const Light& l) { return l.index() == kind; })));
     }
     std::cout << "\n  cameras    " << scene.cameras.size();
-    for (size_t i = 0; i < scene.cameras.size(); ++i) std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
-    std::cout << fmt::format("\n  memory     {}B of geometry, {}B of texels, before the hierarchy\n", format_quantity(double(s.geometry_bytes)), format_quantity(double(s.texel_bytes)));
-    std::cout << fmt::format("  settings   {}x{}, {} samples per pixel, {} integrator, depth {}, {} filter of radius {:.3g}, {} sampler, seed {}\n",
-                             r.width, r.height, r.samples_per_pixel, name_of(r.integrator), r.max_depth, name_of(r.filter.kind), r.filter.radius, name_of(r.sampler), r.seed);
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+        std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
+    std::cout << fmt::format("\n  memory     {}B of geometry, {}B of texels, before the hierarchy\n",
+                             format_quantity(double(s.geometry_bytes)), format_quantity(double(s.texel_bytes)));
+    std::cout << fmt::format(
+        "  settings   {}x{}, {} samples per pixel, {} integrator, depth {}, {} filter of radius {:.3g}, {} sampler, "
+        "seed {}\n",
+        r.width, r.height, r.samples_per_pixel, name_of(r.integrator), r.max_depth, name_of(r.filter.kind),
+        r.filter.radius, name_of(r.sampler), r.seed);
 }
 
 void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
@@ -108,12 +123,16 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     rapidjson::StringBuffer buffer;
     rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
-    const auto text = [&](const char* key, std::string_view value) { w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size())); };
+    const auto text = [&](const char* key, std::string_view value) {
+        w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size()));
+    };
     w.StartObject();
     text("file", path), text("kind", "scene"), text("hash", scene_hash(scene));
-    number("objects", scene.instances.size()), number("shapes", scene.shapes.size()), number("meshes", scene.meshes.size());
+    number("objects", scene.instances.size()), number("shapes", scene.shapes.size()),
+        number("meshes", scene.meshes.size());
     number("triangles", s.triangles), number("placed_triangles", s.placed_triangles), number("vertices", s.vertices);
-    number("materials", scene.materials.size()), number("textures", scene.textures.size()), number("images", scene.images.size());
+    number("materials", scene.materials.size()), number("textures", scene.textures.size()),
+        number("images", scene.images.size());
     number("geometry_bytes", s.geometry_bytes), number("texel_bytes", s.texel_bytes);
     w.Key("lights"), w.StartArray();
     for (const Light& light : scene.lights) w.String(kind_of(light));
@@ -161,7 +180,8 @@ int run_info(const std::string& path, bool json) {
 void add_info(CLI::App& app, Action& action) {
     auto path = std::make_shared<std::string>();
     auto json = std::make_shared<bool>(false);
-    CLI::App* c = app.add_subcommand("info", "What is in a scene (counts, bounds, memory, settings) or a picture (metadata, hash)");
+    CLI::App* c = app.add_subcommand(
+        "info", "What is in a scene (counts, bounds, memory, settings) or a picture (metadata, hash)");
     c->add_option("FILE", *path, "A scene, a model or a picture")->required();
     c->add_flag("--json", *json, "As JSON");
     c->callback([path, json, &action] { action = [path, json] { return run_info(*path, *json); }; });

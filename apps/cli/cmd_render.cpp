@@ -87,11 +87,16 @@ std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char s
 Status apply_filter(const std::string& text, Filter& filter) {
     const size_t colon = text.find(':');
     const auto kind = find_name<FilterKind>(text.substr(0, colon));
-    if (!kind) return usage_error(fmt::format("--filter: unknown filter '{}'", escape_for_display(text)), suggestion(text.substr(0, colon), names_of<FilterKind>()));
+    if (!kind)
+        return usage_error(fmt::format("--filter: unknown filter '{}'", escape_for_display(text)),
+                           suggestion(text.substr(0, colon), names_of<FilterKind>()));
     filter = {*kind, default_filter_radius(*kind)};
     if (colon == std::string::npos) return Ok{};
     const auto radius = parse_double(text.substr(colon + 1));
-    if (!radius) return usage_error(fmt::format("--filter: '{}' is not a radius in pixels", escape_for_display(text.substr(colon + 1))), "for example --filter gaussian:1.5");
+    if (!radius)
+        return usage_error(
+            fmt::format("--filter: '{}' is not a radius in pixels", escape_for_display(text.substr(colon + 1))),
+            "for example --filter gaussian:1.5");
     filter.radius = static_cast<float>(std::clamp(*radius, -1e30, 1e30));
     return Ok{};
 }
@@ -108,7 +113,8 @@ Status apply_camera(const std::string& name, const Scene& scene, uint32_t& camer
         return Ok{};
     }
     const std::vector<std::string_view> views(names.begin(), names.end());
-    return usage_error(fmt::format("--camera: the scene has no camera '{}'", escape_for_display(name)), suggestion(name, views));
+    return usage_error(fmt::format("--camera: the scene has no camera '{}'", escape_for_display(name)),
+                       suggestion(name, views));
 }
 
 /// What the command line says wins over what the scene says.
@@ -118,15 +124,20 @@ Status apply(const RenderOptions& o, const Scene& scene, RenderSettings& s) {
     if (o.max_depth) s.max_depth = *o.max_depth;
     if (!o.size.empty()) {
         const auto size = parse_numbers(o.size, 'x', 2);
-        if (!size) return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(o.size)), "for example --size 1920x1080");
-        if (s.crop) return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
+        if (!size)
+            return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(o.size)),
+                               "for example --size 1920x1080");
+        if (s.crop)
+            return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
         s.width = (*size)[0], s.height = (*size)[1];
     }
     if (o.crop == "all") {
         s.crop.reset();
     } else if (!o.crop.empty()) {
         const auto crop = parse_numbers(o.crop, ',', 4);
-        if (!crop) return usage_error(fmt::format("--crop: '{}' is not X0,Y0,X1,Y1", escape_for_display(o.crop)), "pixels from the top left corner, X1 and Y1 not included");
+        if (!crop)
+            return usage_error(fmt::format("--crop: '{}' is not X0,Y0,X1,Y1", escape_for_display(o.crop)),
+                               "pixels from the top left corner, X1 and Y1 not included");
         s.crop = Crop{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
     }
     if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
@@ -138,7 +149,8 @@ Status apply(const RenderOptions& o, const Scene& scene, RenderSettings& s) {
 }
 
 bool same_file(const std::string& a, const std::string& b) {
-    struct stat x {}, y {};
+    struct stat x {
+    }, y{};
     return ::stat(a.c_str(), &x) == 0 && ::stat(b.c_str(), &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
@@ -149,10 +161,14 @@ Status check_outputs(const RenderOptions& o) {
         const std::string& path = o.outputs[i];
         const std::string extension = extension_of(path);
         if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions))
-            return usage_error(fmt::format("-o {}: unknown picture format '{}'", escape_for_display(path), escape_for_display(extension)), suggestion(extension, kExtensions));
-        if (same_file(path, o.scene)) return usage_error(fmt::format("-o {}: this is the scene itself", escape_for_display(path)));
+            return usage_error(fmt::format("-o {}: unknown picture format '{}'", escape_for_display(path),
+                                           escape_for_display(extension)),
+                               suggestion(extension, kExtensions));
+        if (same_file(path, o.scene))
+            return usage_error(fmt::format("-o {}: this is the scene itself", escape_for_display(path)));
         for (size_t j = 0; j < i; ++j)
-            if (o.outputs[j] == path || same_file(o.outputs[j], path)) return usage_error(fmt::format("-o {}: given twice", escape_for_display(path)));
+            if (o.outputs[j] == path || same_file(o.outputs[j], path))
+                return usage_error(fmt::format("-o {}: given twice", escape_for_display(path)));
         if (auto status = check_writable(path); !status) return status;
     }
     return Ok{};
@@ -168,10 +184,13 @@ std::string default_output(const std::string& scene) {
 
 // --- Running ---------------------------------------------------------------------------------------------------
 
-void print_json(const RenderOptions& o, const RenderSettings& s, const RenderResult& r, const Diagnostics& diagnostics) {
+void print_json(const RenderOptions& o, const RenderSettings& s, const RenderResult& r,
+                const Diagnostics& diagnostics) {
     rapidjson::StringBuffer buffer;
     rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
-    const auto text = [&](const char* key, const std::string& value) { w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size())); };
+    const auto text = [&](const char* key, const std::string& value) {
+        w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size()));
+    };
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
     w.StartObject();
     text("scene", o.scene);
@@ -202,20 +221,25 @@ void print_summary(const RenderOptions& o, const RenderSettings& s, const Render
     const double seconds = std::max(r.statistics.seconds, 1e-9);
     std::string outputs;
     for (const std::string& path : o.outputs) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
-    std::cerr << fmt::format("{}x{}, {} samples per pixel in {} ({} rays/s, {} threads){}{}\n", r.image.width, r.image.height,
-                             r.complete ? fmt::format("{}", s.samples_per_pixel) : fmt::format("{} to {} of {}", r.min_samples, r.max_samples, s.samples_per_pixel),
-                             format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
-                             outputs.empty() ? "" : " -> ", outputs);
+    std::cerr << fmt::format(
+        "{}x{}, {} samples per pixel in {} ({} rays/s, {} threads){}{}\n", r.image.width, r.image.height,
+        r.complete ? fmt::format("{}", s.samples_per_pixel)
+                   : fmt::format("{} to {} of {}", r.min_samples, r.max_samples, s.samples_per_pixel),
+        format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
+        outputs.empty() ? "" : " -> ", outputs);
 }
 
 void warn_bad_samples(const RenderStatistics& s, Diagnostics& diagnostics) {
     if (!s.first_bad_sample) return;
     const BadSample& b = *s.first_bad_sample;
-    diagnostics.warn(fmt::format("samples that were not finite or negative were dropped; the first is sample {} of pixel {},{} with ({}, {}, {})",
-                                 b.sample, b.x, b.y, b.value.r, b.value.g, b.value.b), {}, s.bad_samples);
+    diagnostics.warn(fmt::format("samples that were not finite or negative were dropped; the first is sample {} of "
+                                 "pixel {},{} with ({}, {}, {})",
+                                 b.sample, b.x, b.y, b.value.r, b.value.g, b.value.b),
+                     {}, s.bad_samples);
 }
 
-Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const RenderScene> scene, const RenderSettings& settings, SignalScope& signals) {
+Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const RenderScene> scene,
+                             const RenderSettings& settings, SignalScope& signals) {
     auto job = RenderJob::start(std::move(scene), settings, o.execution);
     if (!job) return std::move(job).error();
     signals.watch(job->get());
@@ -255,7 +279,8 @@ int run_render(RenderOptions o) {
     Diagnostics afterwards;
     warn_bad_samples(result->statistics, afterwards);
     for (const std::string& path : o.outputs)
-        if (auto status = write_image(path, result->image, o.write, &afterwards); !status) return report(status.error());
+        if (auto status = write_image(path, result->image, o.write, &afterwards); !status)
+            return report(status.error());
     if (!o.quiet) report(afterwards), print_summary(o, settings, *result);
     diagnostics.append(afterwards);
     if (o.json) print_json(o, settings, *result, diagnostics);
@@ -276,27 +301,63 @@ CLI::IsMember one_of() {
 void add_render(CLI::App& app, Action& action) {
     auto o = std::make_shared<RenderOptions>();
     CLI::App* c = app.add_subcommand("render", "Render a scene (.json) or a model (.obj, .ply)");
-    c->footer("What is not given comes from the scene file. A model without a scene gets a camera that frames it and a neutral\n"
-              "studio light. Ctrl-C stops and writes what is done; the file's metadata then says that it is partial.");
+    c->footer(
+        "What is not given comes from the scene file. A model without a scene gets a camera that frames it and a "
+        "neutral\n"
+        "studio light. Ctrl-C stops and writes what is done; the file's metadata then says that it is partial.");
     c->add_option("SCENE", o->scene, "The scene or model to render")->required();
-    c->add_option("-o,--output", o->outputs, "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with .png in the current folder (with --json: no file)")->group("Output");
+    c->add_option("-o,--output", o->outputs,
+                  "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
+                  ".png in the current folder (with --json: no file)")
+        ->group("Output");
     c->add_flag("--half", o->half, "EXR with 16-bit instead of 32-bit floats")->group("Output");
-    c->add_option("--exposure", o->write.exposure, "Stops, for PNG (+1: twice as bright)")->check(CLI::Range(-100.0, 100.0))->group("Output");
+    c->add_option("--exposure", o->write.exposure, "Stops, for PNG (+1: twice as bright)")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->group("Output");
     std::vector<std::string> views(view_names().begin(), view_names().end());
-    c->add_option("--view", o->write.view, "View transform for PNG")->check(CLI::IsMember(views))->capture_default_str()->group("Output");
-    c->add_option("--spp", o->spp, "Samples per pixel; the noise falls with their square root")->check(not_negative)->group("Picture");
+    c->add_option("--view", o->write.view, "View transform for PNG")
+        ->check(CLI::IsMember(views))
+        ->capture_default_str()
+        ->group("Output");
+    c->add_option("--spp", o->spp, "Samples per pixel; the noise falls with their square root")
+        ->check(not_negative)
+        ->group("Picture");
     c->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->group("Picture");
-    c->add_option("--crop", o->crop, "X0,Y0,X1,Y1: render only these pixels (X1, Y1 not included), with the same bits as in the whole\npicture; 'all' undoes the scene's crop")->group("Picture");
+    c->add_option("--crop", o->crop,
+                  "X0,Y0,X1,Y1: render only these pixels (X1, Y1 not included), with the same bits as in the "
+                  "whole\npicture; 'all' undoes the scene's crop")
+        ->group("Picture");
     c->add_option("--camera", o->camera, "Name or number of the camera")->group("Picture");
-    c->add_option("--integrator", o->integrator, "How light is computed: direct")->check(one_of<IntegratorKind>())->group("Picture");
-    c->add_option("--max-depth", o->max_depth, "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")->check(not_negative)->group("Picture");
-    c->add_option("--filter", o->filter, "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")->group("Picture");
-    c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")->check(one_of<SamplerKind>())->group("Picture");
-    c->add_option("--seed", o->seed, "Another seed gives another, equally good noise pattern")->check(not_negative)->group("Picture");
-    c->add_option("--threads", o->execution.threads, "0: all the machine has; never changes the picture")->check(CLI::Range(0, 1024))->group("Execution");
-    c->add_option("--tile-size", o->execution.tile_size, "Pixels, 1 to 256; never changes the picture")->check(CLI::Range(1, 256))->capture_default_str()->group("Execution");
-    c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")->check(one_of<BvhBuilder>())->capture_default_str()->group("Execution");
-    c->add_option("--bvh-max-depth", o->execution.bvh_max_depth, "Levels of the hierarchy; never changes the picture")->check(CLI::Range(1, 64))->capture_default_str()->group("Execution");
+    c->add_option("--integrator", o->integrator, "How light is computed: direct")
+        ->check(one_of<IntegratorKind>())
+        ->group("Picture");
+    c->add_option("--max-depth", o->max_depth, "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")
+        ->check(not_negative)
+        ->group("Picture");
+    c->add_option("--filter", o->filter,
+                  "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
+        ->group("Picture");
+    c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")
+        ->check(one_of<SamplerKind>())
+        ->group("Picture");
+    c->add_option("--seed", o->seed, "Another seed gives another, equally good noise pattern")
+        ->check(not_negative)
+        ->group("Picture");
+    c->add_option("--threads", o->execution.threads, "0: all the machine has; never changes the picture")
+        ->check(CLI::Range(0, 1024))
+        ->group("Execution");
+    c->add_option("--tile-size", o->execution.tile_size, "Pixels, 1 to 256; never changes the picture")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str()
+        ->group("Execution");
+    c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")
+        ->check(one_of<BvhBuilder>())
+        ->capture_default_str()
+        ->group("Execution");
+    c->add_option("--bvh-max-depth", o->execution.bvh_max_depth, "Levels of the hierarchy; never changes the picture")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str()
+        ->group("Execution");
     c->add_flag("-q,--quiet", o->quiet, "Only errors");
     c->add_flag("--json", o->json, "Statistics and the picture's hash as JSON on standard output");
     c->callback([o, &action] { action = [o] { return run_render(*o); }; });

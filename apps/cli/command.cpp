@@ -6,10 +6,14 @@ namespace steradian::cli {
 
 int exit_code(ErrorCode code) {
     switch (code) {
-        case ErrorCode::render_failed: return kRenderFailed;
-        case ErrorCode::usage: return kUsage;
-        case ErrorCode::bad_input: return kBadInput;
-        case ErrorCode::resources: return kResources;
+        case ErrorCode::render_failed:
+            return kRenderFailed;
+        case ErrorCode::usage:
+            return kUsage;
+        case ErrorCode::bad_input:
+            return kBadInput;
+        case ErrorCode::resources:
+            return kResources;
     }
     return kRenderFailed;
 }

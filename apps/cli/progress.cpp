@@ -28,10 +28,10 @@ void ProgressMeter::show(const RenderProgress& p) {
     if (!terminal_ && p.seconds < next_plain_) return;
     const double done = double(p.samples_done) / double(p.samples_total);
     const double eta = done > 0 ? p.seconds * (1 - done) / done : 0;
-    const std::string line = fmt::format("{:5.1f} %  {} of {} samples  {} rays/s  {} elapsed  {}", 100 * done,
-                                         format_quantity(double(p.samples_done)), format_quantity(double(p.samples_total)),
-                                         format_quantity(p.seconds > 0 ? double(p.rays) / p.seconds : 0), format_duration(p.seconds),
-                                         done > 0 ? "ETA " + format_duration(eta) : std::string("ETA unknown"));
+    const std::string line = fmt::format(
+        "{:5.1f} %  {} of {} samples  {} rays/s  {} elapsed  {}", 100 * done, format_quantity(double(p.samples_done)),
+        format_quantity(double(p.samples_total)), format_quantity(p.seconds > 0 ? double(p.rays) / p.seconds : 0),
+        format_duration(p.seconds), done > 0 ? "ETA " + format_duration(eta) : std::string("ETA unknown"));
     if (terminal_) {
         std::fprintf(stderr, "\r\x1b[K%s", line.c_str());
         line_open_ = true;

@@ -19,7 +19,8 @@ struct Image {
     uint32_t height = 0;
     std::vector<std::string> channels;  ///< e.g. {"R", "G", "B"}
     std::vector<float> pixels;
-    std::map<std::string, std::string> metadata;  ///< text attributes, written to EXR and PNG; sorted, so files are equal
+    std::map<std::string, std::string>
+        metadata;  ///< text attributes, written to EXR and PNG; sorted, so files are equal
 };
 
 /// XXH3-128 over width, height, channel names and little-endian float32 pixels, as 32 hexadecimal digits.

@@ -12,8 +12,8 @@ enum class ExrPrecision : uint8_t { half, single };
 
 struct ImageWriteOptions {
     ExrPrecision exr = ExrPrecision::single;
-    float exposure = 0;          ///< stops; for PNG only
-    std::string view = "srgb";   ///< view transform for PNG, see view_names()
+    float exposure = 0;         ///< stops; for PNG only
+    std::string view = "srgb";  ///< view transform for PNG, see view_names()
 };
 
 /// By extension: .exr, .hdr, .pfm, .png. The file appears whole or not at all; an existing one is replaced.

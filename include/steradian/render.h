@@ -24,10 +24,10 @@ class RenderScene;
 Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics);
 
 struct RenderProgress {
-    uint64_t samples_done = 0;   ///< camera samples finished, over all pixels
+    uint64_t samples_done = 0;  ///< camera samples finished, over all pixels
     uint64_t samples_total = 0;
-    uint64_t rays = 0;           ///< traced so far, shadow rays included
-    double seconds = 0;          ///< since the job started
+    uint64_t rays = 0;   ///< traced so far, shadow rays included
+    double seconds = 0;  ///< since the job started
 };
 
 /// A camera sample that was not a finite, non-negative radiance. It counted as 0.
@@ -42,12 +42,12 @@ struct RenderStatistics {
     uint64_t camera_rays = 0, specular_rays = 0, shadow_rays = 0;
     uint64_t bad_samples = 0;
     std::optional<BadSample> first_bad_sample;  ///< the one with the smallest (sample, y, x)
-    uint32_t threads = 0;        ///< how many really took part
+    uint32_t threads = 0;                       ///< how many really took part
     double seconds = 0;
 };
 
 struct RenderResult {
-    Image image;  ///< R, G, B of the crop window (or the whole picture), with metadata
+    Image image;           ///< R, G, B of the crop window (or the whole picture), with metadata
     bool complete = true;  ///< false after a cancel: `image` holds what was done, each pixel over its own sample count
     uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
     RenderStatistics statistics;

@@ -32,10 +32,10 @@ struct SourceLocation {
 /// One problem, complete enough to act on.
 struct Error {
     ErrorCode code = ErrorCode::bad_input;
-    std::string message;   ///< one line: what is wrong and what was expected
+    std::string message;  ///< one line: what is wrong and what was expected
     SourceLocation where;
-    std::string excerpt;   ///< the offending source line without its newline, for text files
-    std::string hint;      ///< optional: what to do ("did you mean 'radius'?")
+    std::string excerpt;  ///< the offending source line without its newline, for text files
+    std::string hint;     ///< optional: what to do ("did you mean 'radius'?")
 
     /// The first line is complete by itself (location and message); then the excerpt, a caret and the hint.
     std::string str() const;

@@ -23,10 +23,8 @@ enum class ShapeId : uint32_t {};
 enum class InstanceId : uint32_t {};
 
 template <class Id>
-    requires std::is_enum_v<Id>
-constexpr uint32_t index(Id id) {
-    return static_cast<uint32_t>(id);
-}
+requires std::is_enum_v<Id>
+constexpr uint32_t index(Id id) { return static_cast<uint32_t>(id); }
 
 // --- Textures --------------------------------------------------------------------------------------------------
 
@@ -73,9 +71,9 @@ struct RefractionMaterial {
 
 /// Smooth dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface.
 struct GlassMaterial {
-    float eta = 1.5f;              ///< index inside over outside, > 0
-    Rgb reflectance{1, 1, 1};      ///< tint of the reflected part
-    Rgb transmittance{1, 1, 1};    ///< tint of the transmitted part
+    float eta = 1.5f;            ///< index inside over outside, > 0
+    Rgb reflectance{1, 1, 1};    ///< tint of the reflected part
+    Rgb transmittance{1, 1, 1};  ///< tint of the transmitted part
 };
 
 /// Perfect mirror, both sides.
@@ -145,12 +143,15 @@ struct DirectionalLight {
     Rgb irradiance{1, 1, 1};   ///< W/m² on a surface that faces it
 };
 
+/// Shadow rays per camera sample that one light may ask for.
+inline constexpr uint32_t kMaxLightSamples = 4096;
+
 /// Every point of the instance's surface emits `radiance`, on the side of the geometric normal unless two_sided.
 struct AreaLight {
     InstanceId instance{};
     Rgb radiance{1, 1, 1};
     bool two_sided = false;
-    uint32_t samples = 1;  ///< shadow rays per camera sample
+    uint32_t samples = 1;  ///< shadow rays per camera sample, 1 … kMaxLightSamples
 };
 
 /// Radiance from infinitely far: constant, or a latitude-longitude image times `radiance`.
@@ -161,7 +162,7 @@ struct EnvironmentLight {
     std::optional<ImageId> image = std::nullopt;
     ColorSpace color_space = ColorSpace::linear;
     float rotation = 0;    ///< degrees
-    uint32_t samples = 1;  ///< shadow rays per camera sample
+    uint32_t samples = 1;  ///< shadow rays per camera sample, 1 … kMaxLightSamples
 };
 
 /// At most one EnvironmentLight per scene.

@@ -36,19 +36,19 @@ struct RenderSettings {
     SamplerKind sampler = SamplerKind::sobol;
     uint64_t seed = 0;
     Filter filter;
-    uint32_t camera = 0;              ///< index into Scene::cameras
+    uint32_t camera = 0;  ///< index into Scene::cameras
 };
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
-inline constexpr uint32_t kMaxResolution = 1u << 20;          ///< of one side
-inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;     ///< width × height
+inline constexpr uint32_t kMaxResolution = 1u << 20;       ///< of one side
+inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;  ///< width × height
 
 enum class BvhBuilder : uint8_t { sah, median };
 
 /// What may differ from run to run without changing the picture.
 struct Execution {
-    uint32_t threads = 0;    ///< 0: as many as the machine has
-    uint32_t tile_size = 16; ///< pixels, 1 … 256
+    uint32_t threads = 0;     ///< 0: as many as the machine has
+    uint32_t tile_size = 16;  ///< pixels, 1 … 256
     BvhBuilder bvh = BvhBuilder::sah;
     uint32_t bvh_max_depth = 64;
 };

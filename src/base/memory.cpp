@@ -38,7 +38,8 @@ uint64_t available_memory() noexcept {
     if (read_number("/sys/fs/cgroup/memory.max", "", value) && read_number("/sys/fs/cgroup/memory.current", "", used))
         best = std::min(best, subtract(value, used));
     rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && read_number("/proc/self/statm", "", used))
+    if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+        read_number("/proc/self/statm", "", used))
         best = std::min(best, subtract(limit.rlim_cur, used * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE))));
     return best;
 }

@@ -29,7 +29,9 @@ bool has_scheme(std::string_view path) {
 }
 
 Error address_error(std::string_view named) {
-    return path_error("this is an address, expected a path: nothing is fetched: " + escape_for_display(named));
+    std::string message = "this is an address, expected a path: nothing is fetched: ";
+    message += escape_for_display(named);
+    return path_error(std::move(message));
 }
 
 /// Two names of one file share what was read.

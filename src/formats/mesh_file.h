@@ -13,16 +13,16 @@ namespace steradian {
 /// What an MTL file can say that we use. Paths are resolved against the MTL file's folder.
 struct MeshMaterial {
     std::string name;
-    Rgb diffuse{0.6f, 0.6f, 0.6f};   ///< Kd, linear
-    std::string diffuse_map;         ///< map_Kd; empty: none
+    Rgb diffuse{0.6f, 0.6f, 0.6f};           ///< Kd, linear
+    std::string diffuse_map;                 ///< map_Kd; empty: none
     Vec2 map_scale{1, 1}, map_offset{0, 0};  ///< uv * scale + offset, for uvs as in Mesh (v downwards)
     bool map_clamp = false;
-    Rgb emission{0, 0, 0};           ///< Ke, taken as radiance
-    Rgb specular{0, 0, 0};           ///< Ks
-    Rgb transmission{1, 1, 1};       ///< Tf
-    float ior = 1.5f;                ///< Ni
-    float dissolve = 1;              ///< d, or 1 - Tr
-    int illum = 2;                   ///< 3 mirror; 4, 6, 7, 9 glass
+    Rgb emission{0, 0, 0};      ///< Ke, taken as radiance
+    Rgb specular{0, 0, 0};      ///< Ks
+    Rgb transmission{1, 1, 1};  ///< Tf
+    float ior = 1.5f;           ///< Ni
+    float dissolve = 1;         ///< d, or 1 - Tr
+    int illum = 2;              ///< 3 mirror; 4, 6, 7, 9 glass
 };
 
 /// The faces that share one material.
@@ -42,7 +42,8 @@ struct MeshFile {
 Result<MeshFile> load_mesh_file(const std::string& path, const LoadOptions& options = {});
 
 /// The same from memory (for tests and fuzzing); `folder` is where an OBJ's mtllib is looked for.
-Result<MeshFile> parse_obj(std::string_view text, const std::string& name, const std::string& folder, const LoadOptions& options);
+Result<MeshFile> parse_obj(std::string_view text, const std::string& name, const std::string& folder,
+                           const LoadOptions& options);
 Result<MeshFile> parse_ply(std::string_view data, const std::string& name, const LoadOptions& options);
 
 }  // namespace steradian

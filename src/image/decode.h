@@ -16,12 +16,11 @@ ImageFileKind image_kind(std::string_view bytes) noexcept;
 
 /// Decodes a texture at the depth of its source. `name` stands for the file in messages.
 /// PNG: palette expanded, tRNS as alpha, 16 bit kept. EXR: the data window of the first flat part with colour, half or
-/// float; R, G, B (A) of the first layer that has them, else Y (A), else the only channel; luminance-chroma becomes RGB;
-/// converted to Rec. 709 (as float) when the file states other primaries; values that are not finite stay.
-/// HDR: radiance, that is divided by EXPOSURE=. PFM: times the magnitude of its scale.
-/// Errors: bad_input for a malformed or unsupported file (deep EXR, CMYK JPEG), resources beyond a limit. The header's
-/// claims are checked against the limits and against the size of the file before memory is taken: a file may expand
-/// to 256 MiB, or to 256 times its own size.
+/// float; R, G, B (A) of the first layer that has them, else Y (A), else the only channel; luminance-chroma becomes
+/// RGB; converted to Rec. 709 (as float) when the file states other primaries; values that are not finite stay. HDR:
+/// radiance, that is divided by EXPOSURE=. PFM: times the magnitude of its scale. Errors: bad_input for a malformed or
+/// unsupported file (deep EXR, CMYK JPEG), resources beyond a limit. The header's claims are checked against the limits
+/// and against the size of the file before memory is taken: a file may expand to 256 MiB, or to 256 times its own size.
 Result<RawImage> decode_texels(std::string_view bytes, const std::string& name, const ImageLimits& limits);
 Result<RawImage> read_texels(const std::string& path, const ImageLimits& limits);
 

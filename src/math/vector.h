@@ -63,7 +63,9 @@ constexpr Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z 
 constexpr Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 constexpr Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 constexpr double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-constexpr Vec3d cross(Vec3d a, Vec3d b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+constexpr Vec3d cross(Vec3d a, Vec3d b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 inline Vec3d normalize(Vec3d v) {
     const double l = length(v);
@@ -82,6 +84,19 @@ struct Frame {
     }
     Vec3 to_local(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
     Vec3 to_world(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
+};
+
+/// The same in double.
+struct Frame3d {
+    Vec3d x, y, z;
+
+    static Frame3d from_z(Vec3d n) {
+        const double sign = std::copysign(1.0, n.z);
+        const double a = -1 / (sign + n.z);
+        const double b = n.x * n.y * a;
+        return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+    }
+    Vec3d to_world(Vec3d v) const { return x * v.x + y * v.y + z * v.z; }
 };
 
 }  // namespace steradian

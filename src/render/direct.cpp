@@ -14,8 +14,7 @@ namespace {
 
 /// Which numbers of a sample are used for what. Groups of four belong together (sampler.h).
 enum Dimension : uint32_t {
-    kFilterDimension = 0,  // and 1; 2 and 3 are the lens
-    kLensDimension = 2,
+    kFilterDimension = 0,          // and 1; 2 and 3 are for a lens
     kBounceDimension = 4,          // four per bounce: choice of lobe, unused, direction
     kLightDimension = 0x40000000,  // four per light: position, choice of part, unused
 };
@@ -78,13 +77,12 @@ private:
             path.y = unit.tile.y0 + path.pixel / unit.tile.width();
             path.key = c_.sampler.key(path.x, path.y, first_sample + i / pixels);
             const FilterSample position = c_.filter.sample(c_.sampler.get_2d(path.key, kFilterDimension));
-            const Vec2 lens = c_.sampler.get_2d(path.key, kLensDimension);
             path.weight = position.weight;
             path.throughput = {1, 1, 1};
             path.radiance = {};
             const Vec2 film{static_cast<float>(path.x) + 0.5f + position.offset.x,
                             static_cast<float>(path.y) + 0.5f + position.offset.y};
-            rays_.push_back(c_.camera.generate(film, lens));
+            rays_.push_back(c_.camera.generate(film));
             active_.push_back(i);
         }
         counters.camera_rays += pixels * samples;
@@ -114,8 +112,10 @@ private:
         path.radiance = path.radiance + path.throughput * emitted_radiance(shading_, point, wo);
         if (depth >= c_.settings.max_depth) return;
         const Bsdf bsdf = make_bsdf(shading_, point);
-        if (is_specular(bsdf)) follow(id, point, bsdf, wo, depth);
-        else connect(id, point, bsdf, wo, counters);
+        if (is_specular(bsdf))
+            follow(id, point, bsdf, wo, depth);
+        else
+            connect(id, point, bsdf, wo, counters);
     }
 
     void follow(uint32_t id, const SurfacePoint& point, const Bsdf& bsdf, Vec3 wo, uint32_t depth) noexcept {
@@ -134,6 +134,7 @@ private:
     /// point s n + i.
     void connect(uint32_t id, const SurfacePoint& point, const Bsdf& bsdf, Vec3 wo, Counters& counters) noexcept {
         Path& path = paths_[id];
+        const SurfacePoint from = facing(point, wo);  // the side that receives
         const auto lights = static_cast<uint32_t>(shading_.scene.lights.size());
         for (uint32_t light = 0; light < lights; ++light) {
             const uint32_t n = light_sample_count(shading_, light);
@@ -143,7 +144,7 @@ private:
                 const SampleKey key{path.key.pixel, path.key.sample * n + i};
                 const Vec2 u = c_.sampler.get_2d(key, dimension);
                 const uint32_t choice = c_.sampler.bits(key, dimension + 2);
-                const std::optional<LightSample> towards = sample_light(shading_, light, point, choice, u);
+                const std::optional<LightSample> towards = sample_light(shading_, light, from, choice, u);
                 if (!towards) continue;
                 const float density = towards->pdf > 0 ? towards->pdf : 1.0f;
                 const Rgb contribution = scale * eval(bsdf, wo, towards->wi).f_cos * (towards->radiance / density);
@@ -172,8 +173,10 @@ private:
         for (uint32_t i = 0; i < count; ++i) {
             const Path& path = paths_[i];
             const Rgb l = path.radiance;
-            if (is_finite(l) && l.r >= 0 && l.g >= 0 && l.b >= 0) sums[path.pixel].add(l, path.weight);
-            else counters.bad({path.x, path.y, path.key.sample, l});
+            if (is_finite(l) && l.r >= 0 && l.g >= 0 && l.b >= 0)
+                sums[path.pixel].add(l, path.weight);
+            else
+                counters.bad({path.x, path.y, path.key.sample, l});
         }
     }
 

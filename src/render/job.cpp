@@ -27,9 +27,11 @@ Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.wi
 Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
 
 Status check_crop(const RenderSettings& s) {
-    if (!s.crop || (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height)) return Ok{};
-    return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels", s.crop->x0, s.crop->y0,
-                                      s.crop->x1, s.crop->y1, s.width, s.height));
+    if (!s.crop ||
+        (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height))
+        return Ok{};
+    return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels",
+                                      s.crop->x0, s.crop->y0, s.crop->x1, s.crop->y1, s.width, s.height));
 }
 
 /// The sums, and the picture made of them twice: as it is handed over, and as a file's encoder holds it.
@@ -39,33 +41,46 @@ Status check_memory(const RenderSettings& s) {
     const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float));
     const uint64_t available = available_memory();
     if (needed <= available) return Ok{};
-    return make_error(ErrorCode::resources, fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20), "render it in parts with --crop");
+    return make_error(
+        ErrorCode::resources,
+        fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20),
+        "render it in parts with --crop");
 }
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
     if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
     if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
-        return make_error(ErrorCode::resources, fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width,
-                                                       s.height, kMaxResolution, kMaxPixels));
+        return make_error(ErrorCode::resources,
+                          fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width, s.height,
+                                      kMaxResolution, kMaxPixels));
     if (auto status = check_crop(s); !status) return status;
     if (auto status = check_memory(s); !status) return status;
     if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
-        return settings_error(fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
+        return settings_error(
+            fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
     if (!(s.filter.radius >= 0.01f && s.filter.radius <= 64))
         return settings_error(fmt::format("a filter radius of {}: expected 0.01 to 64 pixels", s.filter.radius));
-    if (e.tile_size < 1 || e.tile_size > 256) return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
+    if (e.tile_size < 1 || e.tile_size > 256)
+        return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
     if (s.camera >= cameras)
-        return settings_error(cameras == 0 ? "the scene has no camera" : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
+        return settings_error(cameras == 0 ? "the scene has no camera"
+                                           : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
     return Ok{};
 }
 
 class Job final : public RenderJob {
 public:
-    Job(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings, const Execution& execution, CameraSampler camera)
-        : scene_(std::move(scene)), settings_(settings), execution_(execution),
-          window_(window_of(settings)), film_(window_, execution.tile_size),
-          context_{*scene_, settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed), cancelled_},
+    Job(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings, const Execution& execution,
+        CameraSampler camera)
+        : scene_(std::move(scene)),
+          settings_(settings),
+          execution_(execution),
+          window_(window_of(settings)),
+          film_(window_, execution.tile_size),
+          context_{
+              *scene_,   settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
+              cancelled_},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
 
     ~Job() override {
@@ -190,7 +205,8 @@ private:
         WorkUnit work;
         work.tile = film_.rect(tile);
         work.first_sample = block * kBlockSamples;
-        work.samples = static_cast<uint32_t>(std::min<uint64_t>(kBlockSamples, settings_.samples_per_pixel - work.first_sample));
+        work.samples =
+            static_cast<uint32_t>(std::min<uint64_t>(kBlockSamples, settings_.samples_per_pixel - work.first_sample));
         std::vector<RgbSum> sums(work.tile.pixels());
         const uint64_t rays_before = counters.rays();
         if (!integrator.render(work, sums, counters)) return false;
@@ -241,8 +257,8 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const RenderScene> scene, const RenderSettings& settings,
-                                                    const Execution& execution) {
+Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const RenderScene> scene,
+                                                    const RenderSettings& settings, const Execution& execution) {
     const FloatMode mode;
     const auto& cameras = scene->shading.scene.cameras;
     if (auto status = check(settings, execution, cameras.size()); !status) return std::move(status).error();
@@ -253,7 +269,8 @@ Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const Render
         job->launch();
         return std::unique_ptr<RenderJob>(std::move(job));
     } catch (const std::bad_alloc&) {
-        return make_error(ErrorCode::resources, fmt::format("not enough memory for a picture of {} × {} pixels", settings.width, settings.height));
+        return make_error(ErrorCode::resources, fmt::format("not enough memory for a picture of {} × {} pixels",
+                                                            settings.width, settings.height));
     } catch (const std::exception& e) {
         return make_error(ErrorCode::render_failed, fmt::format("cannot start the render: {}", e.what()));
     }

@@ -24,7 +24,8 @@ struct AnalyticShapes {
         for (const Shape& shape : shapes) {
             if (const auto* s = std::get_if<Sphere>(&shape)) spheres.push_back({s->center, s->radius});
             if (const auto* r = std::get_if<Rectangle>(&shape)) rectangles.push_back({r->center, r->half_u, r->half_v});
-            if (const auto* d = std::get_if<Disk>(&shape)) disks.push_back({d->center, disk_axes(*d).u, disk_axes(*d).v});
+            if (const auto* d = std::get_if<Disk>(&shape))
+                disks.push_back({d->center, disk_axes(*d).u, disk_axes(*d).v});
         }
     }
 };
@@ -48,7 +49,8 @@ std::vector<Geometry> geometries_of(const Scene& scene, const AnalyticShapes& an
     return out;
 }
 
-Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution, Diagnostics& diagnostics) {
+Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution,
+                                                           Diagnostics& diagnostics) {
     std::string hash = scene_hash(scene);
     sanitize(scene, diagnostics);
     if (auto status = validate(scene); !status) return std::move(status).error();
@@ -70,9 +72,9 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     Result<Accel> accel = Error{};
     with_threads(execution.threads, [&] { accel = Accel::build(geometries, instances, options); });
     if (!accel) return std::move(accel).error();
-    return std::shared_ptr<const RenderScene>(std::make_shared<RenderScene>(
-        std::move(*shading), std::move(analytic.spheres), std::move(analytic.rectangles), std::move(analytic.disks),
-        std::move(*accel), std::move(hash)));
+    return std::shared_ptr<const RenderScene>(
+        std::make_shared<RenderScene>(std::move(*shading), std::move(analytic.spheres), std::move(analytic.rectangles),
+                                      std::move(analytic.disks), std::move(*accel), std::move(hash)));
 }
 
 }  // namespace

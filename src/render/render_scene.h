@@ -12,10 +12,15 @@ namespace steradian {
 
 class RenderScene {
 public:
-    RenderScene(ShadingScene shading_scene, std::vector<SphereGeometry> spheres, std::vector<RectangleGeometry> rectangles,
-                std::vector<DiskGeometry> disks, Accel accel_in, std::string content_hash)
-        : shading(std::move(shading_scene)), accel(std::move(accel_in)), hash(std::move(content_hash)),
-          spheres_(std::move(spheres)), rectangles_(std::move(rectangles)), disks_(std::move(disks)) {}
+    RenderScene(ShadingScene shading_scene, std::vector<SphereGeometry> spheres,
+                std::vector<RectangleGeometry> rectangles, std::vector<DiskGeometry> disks, Accel accel_in,
+                std::string content_hash)
+        : shading(std::move(shading_scene)),
+          accel(std::move(accel_in)),
+          hash(std::move(content_hash)),
+          spheres_(std::move(spheres)),
+          rectangles_(std::move(rectangles)),
+          disks_(std::move(disks)) {}
 
     ShadingScene shading;
     Accel accel;       ///< instance ids of its hits are indices into shading.scene.instances

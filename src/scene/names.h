@@ -55,10 +55,14 @@ constexpr std::optional<Kind> find_name(std::string_view name) noexcept {
 /// The radius in pixels that a filter has when nothing is said.
 constexpr float default_filter_radius(FilterKind kind) noexcept {
     switch (kind) {
-        case FilterKind::box: return 0.5f;
-        case FilterKind::tent: return 1.0f;
-        case FilterKind::gaussian: return 1.5f;
-        case FilterKind::mitchell: return 2.0f;
+        case FilterKind::box:
+            return 0.5f;
+        case FilterKind::tent:
+            return 1.0f;
+        case FilterKind::gaussian:
+            return 1.5f;
+        case FilterKind::mitchell:
+            return 2.0f;
     }
     return 1.0f;
 }

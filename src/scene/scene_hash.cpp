@@ -31,15 +31,10 @@ private:
         std::visit([this](const auto& alternative) { put(alternative); }, v);
     }
     template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void put(T v) {
-        hash_.value(v);
-    }
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void put(T v) { hash_.value(v); }
     template <class... T>
-        requires(sizeof...(T) > 1)
-    void put(const T&... fields) {
-        (put(fields), ...);
-    }
+    requires(sizeof...(T) > 1) void put(const T&... fields) { (put(fields), ...); }
 
     void put(const Vec2& v) { put(v.x, v.y); }
     void put(const Vec3& v) { put(v.x, v.y, v.z); }
@@ -54,9 +49,7 @@ private:
         hash_.bytes(i.data.data(), i.data.size());
     }
     void put(const ConstantTexture& t) { put(t.value); }
-    void put(const ImageTexture& t) {
-        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset);
-    }
+    void put(const ImageTexture& t) { put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset); }
     void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset); }
     void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided); }
     void put(const RefractionMaterial& m) { put(m.eta); }

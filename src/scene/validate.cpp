@@ -51,12 +51,13 @@ private:
     }
     template <class Id, class T>
     void refers(Id id, const std::vector<T>& pool, const char* what) const {
-        if (index(id) >= pool.size()) throw Fault{fmt::format("{}: refers to {} {}, but there are {}", where_, what, index(id), pool.size())};
+        if (index(id) >= pool.size())
+            throw Fault{fmt::format("{}: refers to {} {}, but there are {}", where_, what, index(id), pool.size())};
     }
-    void color(Rgb c, const char* what) const {
-        require(is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0, what);
+    void color(Rgb c, const char* what) const { require(is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0, what); }
+    void point(Vec3 p, const char* what) const {
+        require(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate, what);
     }
-    void point(Vec3 p, const char* what) const { require(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate, what); }
     void direction(Vec3 d, const char* what) const {
         require(is_finite(d) && (d.x != 0 || d.y != 0 || d.z != 0), what);
     }
@@ -67,7 +68,8 @@ private:
 
     void check(const RawImage& i) const {
         static constexpr uint64_t kSize[] = {1, 2, 2, 4};
-        require(i.width > 0 && i.height > 0 && i.channels >= 1 && i.channels <= 4, "an image needs pixels and 1 to 4 channels");
+        require(i.width > 0 && i.height > 0 && i.channels >= 1 && i.channels <= 4,
+                "an image needs pixels and 1 to 4 channels");
         require(i.data.size() == uint64_t(i.width) * i.height * i.channels * kSize[size_t(i.format)],
                 "the image's data does not have the size that its header says");
     }
@@ -89,17 +91,22 @@ private:
         color(m.reflectance, "the reflectance must be finite and not negative");
         color(m.transmittance, "the transmittance must be finite and not negative");
     }
-    void check(const MirrorMaterial& m) const { color(m.reflectance, "the reflectance must be finite and not negative"); }
+    void check(const MirrorMaterial& m) const {
+        color(m.reflectance, "the reflectance must be finite and not negative");
+    }
 
     void check(const Mesh& m) const {
         require(m.indices.size() % 3 == 0, "the number of indices must be a multiple of three");
-        require(m.indices.size() / 3 < kNoHit && m.positions.size() < kNoHit, "too many triangles or vertices for 32-bit ids");
-        require(m.normals.empty() || m.normals.size() == m.positions.size(), "there must be one normal per position, or none");
+        require(m.indices.size() / 3 < kNoHit && m.positions.size() < kNoHit,
+                "too many triangles or vertices for 32-bit ids");
+        require(m.normals.empty() || m.normals.size() == m.positions.size(),
+                "there must be one normal per position, or none");
         require(m.uvs.empty() || m.uvs.size() == m.positions.size(), "there must be one uv per position, or none");
         const size_t count = m.positions.size();
         require(std::all_of(m.indices.begin(), m.indices.end(), [&](uint32_t i) { return i < count; }),
                 "an index refers to a vertex that does not exist");
-        require(std::all_of(m.positions.begin(), m.positions.end(), is_usable), "a vertex is not finite or beyond 1e15");
+        require(std::all_of(m.positions.begin(), m.positions.end(), is_usable),
+                "a vertex is not finite or beyond 1e15");
     }
     static bool is_usable(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
     void check(MeshId id) const { refers(id, s_.meshes, "mesh"); }
@@ -132,13 +139,16 @@ private:
         direction(l.direction, "the direction must be finite and not zero");
         color(l.intensity, "the intensity must be finite and not negative");
         require(l.outer_angle > 0 && l.outer_angle <= 180, "the outer angle must be in (0, 180] degrees");
-        require(l.inner_angle >= 0 && l.inner_angle <= l.outer_angle, "the inner angle must be between 0 and the outer angle");
+        require(l.inner_angle >= 0 && l.inner_angle <= l.outer_angle,
+                "the inner angle must be between 0 and the outer angle");
     }
     void check(const DirectionalLight& l) const {
         direction(l.direction, "the direction must be finite and not zero");
         color(l.irradiance, "the irradiance must be finite and not negative");
     }
-    void samples(uint32_t n) const { require(n >= 1 && n <= 4096, "the number of light samples must be between 1 and 4096"); }
+    void samples(uint32_t n) const {
+        require(n >= 1 && n <= kMaxLightSamples, "the number of light samples must be between 1 and 4096");
+    }
     void check(const AreaLight& l) const {
         refers(l.instance, s_.instances, "object");
         color(l.radiance, "the radiance must be finite and not negative");
@@ -165,7 +175,8 @@ private:
             environments += std::holds_alternative<EnvironmentLight>(light);
             if (const auto* area = std::get_if<AreaLight>(&light)) {
                 if (lit[index(area->instance)])
-                    throw Fault{fmt::format("object {} has two area lights, at most one is possible", index(area->instance))};
+                    throw Fault{
+                        fmt::format("object {} has two area lights, at most one is possible", index(area->instance))};
                 lit[index(area->instance)] = true;
             }
         }
@@ -224,7 +235,8 @@ void sanitize(Scene& scene, Diagnostics& diagnostics) {
         for (Vec3& n : mesh.normals)
             if (!is_finite(n)) n = {}, ++normals;
     }
-    if (triangles) diagnostics.warn("triangles with vertices that are not finite or beyond 1e15 were dropped", {}, triangles);
+    if (triangles)
+        diagnostics.warn("triangles with vertices that are not finite or beyond 1e15 were dropped", {}, triangles);
     if (uvs) diagnostics.warn("texture coordinates that are not finite were replaced by 0", {}, uvs);
     if (normals) diagnostics.warn("normals that are not finite were replaced by the flat ones", {}, normals);
 }

@@ -49,7 +49,7 @@ Result<CameraSampler> CameraSampler::make(const Camera& camera, uint32_t width, 
     return out;
 }
 
-Ray CameraSampler::generate(Vec2 film, Vec2 /*lens*/) const noexcept {
+Ray CameraSampler::generate(Vec2 film) const noexcept {
     Ray ray;
     ray.o = origin_;
     ray.d = Vec3(normalize(corner_ + dx_ * film.x + dy_ * film.y));

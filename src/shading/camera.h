@@ -15,9 +15,8 @@ public:
     /// outside (0, 180), values that are not finite.
     static Result<CameraSampler> make(const Camera& camera, uint32_t width, uint32_t height);
 
-    /// Through a film position in pixels from the top left corner of the full picture; `lens` is for cameras that have
-    /// one. The direction has unit length.
-    Ray generate(Vec2 film, Vec2 lens) const noexcept;
+    /// Through a film position in pixels from the top left corner of the full picture. The direction has unit length.
+    Ray generate(Vec2 film) const noexcept;
 
 private:
     Vec3 origin_;

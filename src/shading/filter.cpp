@@ -149,18 +149,4 @@ float FilterSampler::evaluate(Vec2 offset) const noexcept {
     return static_cast<float>(fx * fy * normalisation_);
 }
 
-float default_radius(FilterKind kind) noexcept {
-    switch (kind) {
-        case FilterKind::box:
-            return 0.5f;
-        case FilterKind::tent:
-            return 1;
-        case FilterKind::gaussian:
-            return 1.5f;
-        case FilterKind::mitchell:
-            return 2;
-    }
-    return 0.5f;
-}
-
 }  // namespace steradian

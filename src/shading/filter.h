@@ -32,7 +32,4 @@ private:
     std::shared_ptr<const Table> table_;  ///< null for the filters with a closed inverse
 };
 
-/// The radius a filter has when nothing is said: box 0.5, tent 1, Gaussian 1.5, Mitchell 2.
-float default_radius(FilterKind kind) noexcept;
-
 }  // namespace steradian

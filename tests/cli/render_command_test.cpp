@@ -47,7 +47,8 @@ protected:
 };
 
 TEST_F(RenderCommand, WritesEveryFormatWithTheSamePicture) {
-    const Outcome o = steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.pfm", "-o", "a.hdr", "-o", "a.png", "--json"});
+    const Outcome o =
+        steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.pfm", "-o", "a.hdr", "-o", "a.png", "--json"});
     ASSERT_EQ(o.code, 0) << o.err;
     for (const char* name : {"a.exr", "a.pfm"}) {
         const auto image = read_image(folder_.file(name));
@@ -68,7 +69,10 @@ TEST_F(RenderCommand, WithoutOutputItWritesAPngNamedLikeTheScene) {
 
 TEST_F(RenderCommand, EqualPicturesAreEqualFiles) {
     ASSERT_EQ(steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.png", "--threads", "1"}).code, 0);
-    ASSERT_EQ(steradian({"render", "scene.json", "-o", "b.exr", "-o", "b.png", "--threads", "3", "--tile-size", "5", "--bvh", "median"}).code, 0);
+    ASSERT_EQ(steradian({"render", "scene.json", "-o", "b.exr", "-o", "b.png", "--threads", "3", "--tile-size", "5",
+                         "--bvh", "median"})
+                  .code,
+              0);
     EXPECT_EQ(slurp(folder_.file("a.exr")), slurp(folder_.file("b.exr")));
     EXPECT_EQ(slurp(folder_.file("a.png")), slurp(folder_.file("b.png")));
 }
@@ -83,9 +87,16 @@ TEST_F(RenderCommand, OptionsReachThePicture) {
     const std::string plain = hash({});
     EXPECT_EQ(plain, hash({"--spp", "4", "--size", "32x24", "--camera", "front", "--sampler", "sobol", "--seed", "0"}));
     EXPECT_EQ(plain, hash({"--filter", "gaussian:1.5"}));
-    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {"--spp", "5"}, {"--size", "33x24"}, {"--camera", "side"}, {"--camera", "1"}, {"--seed", "1"}, {"--sampler", "independent"},
-             {"--filter", "box"}, {"--filter", "tent:2"}, {"--max-depth", "0"}, {"--crop", "1,1,9,9"}})
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{{"--spp", "5"},
+                                                                                         {"--size", "33x24"},
+                                                                                         {"--camera", "side"},
+                                                                                         {"--camera", "1"},
+                                                                                         {"--seed", "1"},
+                                                                                         {"--sampler", "independent"},
+                                                                                         {"--filter", "box"},
+                                                                                         {"--filter", "tent:2"},
+                                                                                         {"--max-depth", "0"},
+                                                                                         {"--crop", "1,1,9,9"}})
         EXPECT_NE(plain, hash(options)) << options[0] << " " << options[1];
 }
 
@@ -115,7 +126,8 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
 }
 
 TEST_F(RenderCommand, HelpAndVersionExitWith0) {
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"render", "--help"}, {"info", "--help"}}) {
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"--help"}, {"--version"}, {"render", "--help"}, {"info", "--help"}}) {
         const Outcome o = steradian(arguments);
         EXPECT_EQ(o.code, 0);
         EXPECT_FALSE(o.out.empty());
@@ -151,7 +163,8 @@ TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeRendering) {
 
 TEST_F(RenderCommand, AWriteThatFailsKeepsTheOldFile) {
     spit(folder_.file("a.pfm"), "precious");
-    const Outcome o = Process(folder_, {"render", "scene.json", "--size", "200x200", "--spp", "1", "-o", "a.pfm"}, 4096).wait();
+    const Outcome o =
+        Process(folder_, {"render", "scene.json", "--size", "200x200", "--spp", "1", "-o", "a.pfm"}, 4096).wait();
     EXPECT_EQ(o.code, 4) << o.err;
     EXPECT_EQ(slurp(folder_.file("a.pfm")), "precious");
     expect_files({"a.pfm"});
@@ -206,7 +219,8 @@ TEST_F(RenderCommand, TheLocaleDoesNotMatter) {
 TEST_F(RenderCommand, InfoTellsWhatIsInAScene) {
     const Outcome o = steradian({"info", "scene.json"});
     EXPECT_EQ(o.code, 0) << o.err;
-    for (const char* text : {"front, side", "1 point", "1 environment", "32x24"}) EXPECT_NE(o.out.find(text), std::string::npos) << o.out;
+    for (const char* text : {"front, side", "1 point", "1 environment", "32x24"})
+        EXPECT_NE(o.out.find(text), std::string::npos) << o.out;
     const Outcome json = steradian({"info", "scene.json", "--json"});
     EXPECT_EQ(field(json.out, "objects"), "1") << json.out;
 }

@@ -6,6 +6,7 @@
 
 #include "formats/json/document.h"
 #include "formats/scene_json/keys.h"
+#include "scene/names.h"
 #include "support/support.h"
 
 namespace steradian::scene_json {
@@ -101,9 +102,9 @@ TEST_F(Schema, ListsTheSameWords) {
     const auto property = [&](std::string_view object, std::string_view key) {
         return *member(*member(definition(object), "properties"), key);
     };
-    check(property("render", "integrator"), kIntegrators);
-    check(property("render", "sampler"), kSamplers);
-    check(property("filter", "type"), kFilters);
+    check(property("render", "integrator"), names_of<IntegratorKind>());
+    check(property("render", "sampler"), names_of<SamplerKind>());
+    check(property("filter", "type"), names_of<FilterKind>());
     check(property("image_texture", "filter"), kTextureFilters);
     check(definition("wrap"), kWraps);
     check(definition("color_space"), kColorSpaces);

@@ -11,7 +11,9 @@
 namespace steradian {
 namespace {
 
-std::vector<RgbSum> sums_of(size_t pixels, double value) { return std::vector<RgbSum>(pixels, RgbSum{value, 2 * value, 3 * value}); }
+std::vector<RgbSum> sums_of(size_t pixels, double value) {
+    return std::vector<RgbSum>(pixels, RgbSum{value, 2 * value, 3 * value});
+}
 
 TEST(Film, TilesCoverTheWindowOnceOnAnAbsoluteGrid) {
     for (const uint32_t size : {1u, 7u, 16u, 256u}) {
@@ -78,7 +80,8 @@ TEST(Film, SumsStayExactAtManySamples) {
     const uint64_t samples = test::run_everything() ? 1'000'000'000 : 64'000'000;
     const float values[4] = {0.1f, 1000.3f, 3.3e-5f, 17.77f};
     RgbSum block;
-    for (uint32_t i = 0; i < kBlockSamples; ++i) block.add({values[i % 4], values[(i + 1) % 4], values[(i + 2) % 4]}, 1.0f);
+    for (uint32_t i = 0; i < kBlockSamples; ++i)
+        block.add({values[i % 4], values[(i + 1) % 4], values[(i + 2) % 4]}, 1.0f);
     Film film({0, 0, 1, 1}, 1);
     for (uint64_t b = 0; b < samples / kBlockSamples; ++b) film.commit(0, b, kBlockSamples, {block});
     const double expected = (double(values[0]) + double(values[1]) + double(values[2]) + double(values[3])) / 4;

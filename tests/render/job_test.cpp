@@ -28,7 +28,8 @@ std::shared_ptr<const RenderScene> prepared(Scene scene, const Execution& execut
     return result.ok() ? *result : nullptr;
 }
 
-RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSettings& settings, const Execution& execution = {}) {
+RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSettings& settings,
+                 const Execution& execution = {}) {
     auto job = RenderJob::start(scene, settings, execution);
     EXPECT_TRUE(job.ok()) << (job.ok() ? "" : job.error().str());
     auto result = (*job)->take();
@@ -39,12 +40,17 @@ RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSe
 TEST(Job, TheSameBitsOnAnyNumberOfThreadsTilesAndBuilders) {
     const auto scene = prepared(test::everything_scene());
     const std::string expected = image_hash(run(scene, small_settings(), {1, 16, BvhBuilder::sah, 64}).image);
-    for (const uint32_t threads : {2u, 7u}) EXPECT_EQ(image_hash(run(scene, small_settings(), {threads, 16, BvhBuilder::sah, 64}).image), expected) << threads;
-    for (const uint32_t tile : {1u, 13u, 64u, 256u}) EXPECT_EQ(image_hash(run(scene, small_settings(), {2, tile, BvhBuilder::sah, 64}).image), expected) << tile;
+    for (const uint32_t threads : {2u, 7u})
+        EXPECT_EQ(image_hash(run(scene, small_settings(), {threads, 16, BvhBuilder::sah, 64}).image), expected)
+            << threads;
+    for (const uint32_t tile : {1u, 13u, 64u, 256u})
+        EXPECT_EQ(image_hash(run(scene, small_settings(), {2, tile, BvhBuilder::sah, 64}).image), expected) << tile;
     for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::median})
         for (const uint32_t depth : {1u, 3u, 64u}) {
             const Execution execution{2, 16, builder, depth};
-            EXPECT_EQ(image_hash(run(prepared(test::everything_scene(), execution), small_settings(), execution).image), expected) << depth;
+            EXPECT_EQ(image_hash(run(prepared(test::everything_scene(), execution), small_settings(), execution).image),
+                      expected)
+                << depth;
         }
 }
 

@@ -62,8 +62,11 @@ TEST(Prepare, DegenerateGeometryRendersWithoutABadPixel) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const float scale : {1e-20f, 1e-6f, 1.0f, 1e6f, 1e14f}) {
         Scene s = lit_plane();
-        const auto mesh = add<MeshId>(s.meshes, Mesh{{{0, 0, 1}, {0, 0, 1}, {scale, 0, 1}, {0, scale, 1}, {2 * scale, 0, 1}, {nan, 0, 0}},
-                                                     {}, {}, {0, 1, 2, 0, 2, 4, 2, 2, 2, 0, 2, 3, 5, 2, 3}});
+        const auto mesh = add<MeshId>(
+            s.meshes, Mesh{{{0, 0, 1}, {0, 0, 1}, {scale, 0, 1}, {0, scale, 1}, {2 * scale, 0, 1}, {nan, 0, 0}},
+                           {},
+                           {},
+                           {0, 1, 2, 0, 2, 4, 2, 2, 2, 0, 2, 3, 5, 2, 3}});
         test::place(s, mesh, MaterialId{0});
         expect_finite(std::move(s), "triangles");
     }
@@ -80,10 +83,12 @@ TEST(Prepare, DegenerateLightsRenderWithoutABadPixel) {
     for (const Rgb radiance : {Rgb{0, 0, 0}, Rgb{1e-38f, 0, 0}, Rgb{1e20f, 1e20f, 1e20f}}) {
         Scene s = lit_plane();
         const MaterialId grey{0};
-        for (const Shape& shape : {Shape(Rectangle{{0, 0, 1}, {0, 0, 0}, {0, 1, 0}}), Shape(Sphere{{2, 0, 1}, 1e-12f}),
-                                   Shape(Disk{{0, 2, 1}, {0, 0, -1}, 1e-12f}), Shape(Rectangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})})
+        for (const Shape& shape :
+             {Shape(Rectangle{{0, 0, 1}, {0, 0, 0}, {0, 1, 0}}), Shape(Sphere{{2, 0, 1}, 1e-12f}),
+              Shape(Disk{{0, 2, 1}, {0, 0, -1}, 1e-12f}), Shape(Rectangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})})
             s.lights.push_back(AreaLight{test::place(s, shape, grey), radiance, true, 3});
-        const auto mesh = add<MeshId>(s.meshes, Mesh{{{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {}, {}, {0, 1, 2, 0, 3, 2}});
+        const auto mesh =
+            add<MeshId>(s.meshes, Mesh{{{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {}, {}, {0, 1, 2, 0, 3, 2}});
         s.lights.push_back(AreaLight{test::place(s, mesh, grey), radiance});
         const auto empty = add<MeshId>(s.meshes, Mesh{});
         s.lights.push_back(AreaLight{test::place(s, empty, grey), radiance});
@@ -95,7 +100,8 @@ TEST(Prepare, DegenerateLightsRenderWithoutABadPixel) {
 
 TEST(Prepare, CamerasInStrangePlacesRenderWithoutABadPixel) {
     for (const PerspectiveCamera& camera :
-         {PerspectiveCamera{{0, 0, 0}, {0, 0, 1}}, PerspectiveCamera{{0, 0, 3}, {0, 0, 0}}, PerspectiveCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 1e-9f},
+         {PerspectiveCamera{{0, 0, 0}, {0, 0, 1}}, PerspectiveCamera{{0, 0, 3}, {0, 0, 0}},
+          PerspectiveCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 1e-9f},
           PerspectiveCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 179.99f}, PerspectiveCamera{{1e14f, 0, 5}, {0, 0, 0}}}) {
         Scene s = test::everything_scene();
         s.cameras = {camera};
@@ -116,7 +122,8 @@ TEST(Prepare, ManyLightsLoad) {
 
 TEST(Prepare, WhatItDropsItReports) {
     Scene s = lit_plane();
-    const auto mesh = add<MeshId>(s.meshes, Mesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {2e15f, 0, 0}}, {}, {}, {0, 1, 2, 0, 1, 3}});
+    const auto mesh =
+        add<MeshId>(s.meshes, Mesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {2e15f, 0, 0}}, {}, {}, {0, 1, 2, 0, 1, 3}});
     test::place(s, mesh, MaterialId{0});
     Diagnostics diagnostics;
     ASSERT_TRUE(prepare(std::move(s), {}, diagnostics).ok());

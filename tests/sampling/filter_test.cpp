@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "scene/names.h"
 #include "support/chi_square.h"
 #include "support/random.h"
 #include "support/support.h"
@@ -230,11 +231,11 @@ TEST(FilterBits, AreWhatTheyWere) {
 }
 
 TEST(Filter, UsualRadii) {
-    EXPECT_EQ(default_radius(FilterKind::box), 0.5f);
-    EXPECT_EQ(default_radius(FilterKind::tent), 1.0f);
-    EXPECT_EQ(default_radius(FilterKind::gaussian), 1.5f);
-    EXPECT_EQ(default_radius(FilterKind::mitchell), 2.0f);
-    EXPECT_EQ(Filter{}.radius, default_radius(Filter{}.kind));
+    EXPECT_EQ(default_filter_radius(FilterKind::box), 0.5f);
+    EXPECT_EQ(default_filter_radius(FilterKind::tent), 1.0f);
+    EXPECT_EQ(default_filter_radius(FilterKind::gaussian), 1.5f);
+    EXPECT_EQ(default_filter_radius(FilterKind::mitchell), 2.0f);
+    EXPECT_EQ(Filter{}.radius, default_filter_radius(Filter{}.kind));
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(RefractionMaterial{}));
     add<MaterialId>(s.materials, Material(GlassMaterial{}));
     add<MaterialId>(s.materials, Material(MirrorMaterial{}));
-    s.meshes.push_back({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
+    s.meshes.push_back(
+        {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
     add<ShapeId>(s.shapes, Shape(Sphere{}));
     add<ShapeId>(s.shapes, Shape(Rectangle{}));

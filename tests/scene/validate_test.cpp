@@ -46,37 +46,72 @@ TEST_P(ValidateFault, IsNamed) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, ValidateFault,
-    testing::Values(
-        Fault{"material 'wood\\x1b': refers to texture 7, but there are 1", [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
-        Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
-        Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
-        Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},
-        Fault{"mesh 0: an index refers to a vertex", [](Scene& s) { s.meshes[0].indices[1] = 3; }},
-        Fault{"multiple of three", [](Scene& s) { s.meshes[0].indices.push_back(0); }},
-        Fault{"one normal per position", [](Scene& s) { s.meshes[0].normals.resize(2); }},
-        Fault{"one uv per position", [](Scene& s) { s.meshes[0].uvs.resize(4); }},
-        Fault{"not finite or beyond 1e15", [](Scene& s) { s.meshes[0].positions[0].x = 2e15f; }},
-        Fault{"radius must be positive", [](Scene& s) { s.shapes[1] = Sphere{{}, 0}; }},
-        Fault{"radius must be positive", [](Scene& s) { s.shapes[1] = Sphere{{}, kNan}; }},
-        Fault{"centre must be finite", [](Scene& s) { s.shapes[1] = Rectangle{{kInf, 0, 0}, {1, 0, 0}, {0, 1, 0}}; }},
-        Fault{"normal must be finite and not zero", [](Scene& s) { s.shapes[1] = Disk{{}, {0, 0, 0}, 1}; }},
-        Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
-        Fault{"singular or not finite", [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
-        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
-        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
-        Fault{"not negative", [](Scene& s) { s.textures[0] = ConstantTexture{{-1, 0, 0}}; }},
-        Fault{"refers to image 0", [](Scene& s) { s.textures[0] = ImageTexture{}; }},
-        Fault{"size that its header says", [](Scene& s) { s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)}); }},
-        Fault{"light 0: the intensity", [](Scene& s) { s.lights[0] = PointLight{{}, {kNan, 0, 0}}; }},
-        Fault{"inner angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45}; }},
-        Fault{"outer angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181}; }},
-        Fault{"direction must be finite and not zero", [](Scene& s) { s.lights[0] = DirectionalLight{{0, 0, 0}}; }},
-        Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
-        Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
-        Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
-        Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
-        Fault{"camera 0: the field of view", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
-        Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
+    testing::Values(Fault{"material 'wood\\x1b': refers to texture 7, but there are 1",
+                          [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
+                    Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
+                    Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
+                    Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},
+                    Fault{"mesh 0: an index refers to a vertex", [](Scene& s) { s.meshes[0].indices[1] = 3; }},
+                    Fault{"multiple of three", [](Scene& s) { s.meshes[0].indices.push_back(0); }},
+                    Fault{"one normal per position", [](Scene& s) { s.meshes[0].normals.resize(2); }},
+                    Fault{"one uv per position", [](Scene& s) { s.meshes[0].uvs.resize(4); }},
+                    Fault{"not finite or beyond 1e15", [](Scene& s) { s.meshes[0].positions[0].x = 2e15f; }},
+                    Fault{"radius must be positive",
+                          [](Scene& s) {
+                              s.shapes[1] = Sphere{{}, 0};
+                          }},
+                    Fault{"radius must be positive",
+                          [](Scene& s) {
+                              s.shapes[1] = Sphere{{}, kNan};
+                          }},
+                    Fault{"centre must be finite",
+                          [](Scene& s) {
+                              s.shapes[1] = Rectangle{{kInf, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+                          }},
+                    Fault{"normal must be finite and not zero",
+                          [](Scene& s) {
+                              s.shapes[1] = Disk{{}, {0, 0, 0}, 1};
+                          }},
+                    Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
+                    Fault{"singular or not finite",
+                          [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
+                    Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
+                    Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
+                    Fault{"not negative",
+                          [](Scene& s) {
+                              s.textures[0] = ConstantTexture{{-1, 0, 0}};
+                          }},
+                    Fault{"refers to image 0", [](Scene& s) { s.textures[0] = ImageTexture{}; }},
+                    Fault{"size that its header says",
+                          [](Scene& s) {
+                              s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)});
+                          }},
+                    Fault{"light 0: the intensity",
+                          [](Scene& s) {
+                              s.lights[0] = PointLight{{}, {kNan, 0, 0}};
+                          }},
+                    Fault{"inner angle",
+                          [](Scene& s) {
+                              s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45};
+                          }},
+                    Fault{"outer angle",
+                          [](Scene& s) {
+                              s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181};
+                          }},
+                    Fault{"direction must be finite and not zero",
+                          [](Scene& s) {
+                              s.lights[0] = DirectionalLight{{0, 0, 0}};
+                          }},
+                    Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
+                    Fault{"light samples",
+                          [](Scene& s) {
+                              s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0};
+                          }},
+                    Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
+                    Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
+                    Fault{"camera 0: the field of view",
+                          [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
+                    Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
 
 TEST(Validate, AcceptsAGoodScene) {
     const Status status = validate(good_scene());

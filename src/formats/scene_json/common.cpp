@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "scene/names.h"
 
 namespace steradian::scene_json {
 
@@ -37,11 +38,11 @@ void read_resolution(ObjectReader& film, RenderSettings& settings) {
 }
 
 Filter read_filter(const Source& source, Value value) {
-    static constexpr float kDefaultRadius[] = {0.5f, 1.0f, 1.5f, 2.0f};
     static constexpr Range kRadius{0.01, 32};
     ObjectReader reader(source, value, kFilterSpec, "the filter");
-    const size_t kind = json::read_choice(source, reader.require("type"), "the type of the filter", kFilters);
-    const Filter filter{static_cast<FilterKind>(kind), reader.number_or("radius", kDefaultRadius[kind], kRadius)};
+    const auto kind = static_cast<FilterKind>(
+        json::read_choice(source, reader.require("type"), "the type of the filter", names_of<FilterKind>()));
+    const Filter filter{kind, reader.number_or("radius", default_filter_radius(kind), kRadius)};
     reader.finish();
     return filter;
 }

@@ -95,9 +95,6 @@ inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle"
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};
 
-inline constexpr std::string_view kIntegrators[] = {"direct"};
-inline constexpr std::string_view kSamplers[] = {"sobol", "independent"};
-inline constexpr std::string_view kFilters[] = {"box", "tent", "gaussian", "mitchell"};
 inline constexpr std::string_view kCameraTypes[] = {"perspective"};
 inline constexpr std::string_view kColorSpaces[] = {"linear", "srgb"};
 inline constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror", "black"};

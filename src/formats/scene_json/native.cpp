@@ -1,5 +1,7 @@
 #include "formats/scene_json/native.h"
 
+#include "scene/names.h"
+
 namespace steradian::scene_json {
 
 void NativeLoader::load(Value root) {
@@ -81,10 +83,10 @@ void NativeLoader::read_camera(Value value, std::string name) {
 void NativeLoader::read_render(Value value) {
     RenderSettings& settings = context_.loaded.settings;
     ObjectReader render(source_, value, kRenderSpec, "'render'");
-    settings.integrator = static_cast<IntegratorKind>(render.choice_or("integrator", 0, kIntegrators));
+    settings.integrator = static_cast<IntegratorKind>(render.choice_or("integrator", 0, names_of<IntegratorKind>()));
     settings.max_depth = static_cast<uint32_t>(render.integer_or("max_depth", settings.max_depth, 0, kMaxDepth));
     settings.samples_per_pixel = render.integer_or("spp", settings.samples_per_pixel, 1, kMaxSamplesPerPixel);
-    settings.sampler = static_cast<SamplerKind>(render.choice_or("sampler", 0, kSamplers));
+    settings.sampler = static_cast<SamplerKind>(render.choice_or("sampler", 0, names_of<SamplerKind>()));
     settings.seed = render.integer_or("seed", settings.seed, 0, UINT64_MAX);
     if (const auto camera = render.find("camera")) {
         const auto& names = scene().names.cameras;

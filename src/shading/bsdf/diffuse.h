@@ -1,9 +1,9 @@
 // Lambert's law.
 #pragma once
 
+#include "math/warp.h"
 #include "shading/bsdf/lobe.h"
 #include "shading/texture.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -34,7 +34,7 @@ inline BsdfEval eval_lobe(const DiffuseBsdf& lobe, const LobeGeometry& g, Vec3 w
 inline std::optional<BsdfSample> sample_lobe(const DiffuseBsdf& lobe, const LobeGeometry& g, Vec3 wo, float, Vec2 u) {
     const int side = side_by_both_normals(g, wo);
     if (side == 0 || (side < 0 && !lobe.two_sided)) return std::nullopt;
-    const Vec3 local = static_cast<Vec3>(warp_cosine_hemisphere(u));
+    const Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
     const Vec3 wi = normalize(g.frame.to_world({local.x, local.y, side > 0 ? local.z : -local.z}));
     if (side_by_both_normals(g, wi) != side) return std::nullopt;
     return BsdfSample{wi, lobe.reflectance, std::fabs(dot(wi, g.frame.z)) * kInvPi, false, false};

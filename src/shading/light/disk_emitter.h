@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "math/warp.h"
 #include "shading/light/emitter.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -14,7 +14,7 @@ inline double emitter_pdf(const DiskEmitter& disk, const EmitterContext&, Vec3d 
 inline std::optional<EmitterSample> sample_emitter(const DiskEmitter& disk, const EmitterContext& context, Vec3d from,
                                                    uint32_t, Vec2 u) {
     if (!emits_towards(disk.center, disk.normal, from, context.two_sided)) return std::nullopt;
-    const DiskPoint at = warp_disk(u);
+    const warp::DiskPoint at = warp::disk(u);
     EmitterSample out;
     out.p = disk.center + disk.axis_u * at.x + disk.axis_v * at.y;
     out.n = disk.normal;

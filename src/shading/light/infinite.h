@@ -1,9 +1,9 @@
 // The environment.
 #pragma once
 
+#include "math/warp.h"
 #include "shading/environment.h"
 #include "shading/light/light_kind.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -17,7 +17,7 @@ inline std::optional<LightSample> sample_kind(const EnvironmentLight&, const Lig
     if (table.empty()) return std::nullopt;
     LightSample out;
     if (table.is_constant()) {
-        const Vec3 local = static_cast<Vec3>(warp_cosine_hemisphere(u));
+        const Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
         out.wi = normalize(Frame::from_z(from.ns).to_world(local));
         out.pdf = dot(out.wi, from.ns) * kInvPi;
     } else {

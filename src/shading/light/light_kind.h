@@ -71,14 +71,15 @@ struct Towards {
     }
 };
 
-/// Intensity over the square of the distance. Nothing when that is black or too much for a float.
+/// Intensity over the square of the distance. Nothing when that is black; what is too much for a float arrives as
+/// infinity, so that the sample is counted as a bad one and not lost in silence.
 inline std::optional<LightSample> delta_sample(const SurfacePoint& from, Vec3 position, Rgb intensity,
                                                const Towards& towards) {
     const double falloff = 1 / (towards.distance * towards.distance);
     const Rgb arriving{static_cast<float>(intensity.r * falloff), static_cast<float>(intensity.g * falloff),
                        static_cast<float>(intensity.b * falloff)};
     const std::optional<Ray> ray = shadow_ray_to_point(from, position, towards.wi);
-    if (is_black(arriving) || !is_finite(arriving) || !ray) return std::nullopt;
+    if (is_black(arriving) || !ray) return std::nullopt;
     return LightSample{towards.wi, arriving, 0, *ray};
 }
 

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "math/transform.h"
+#include "math/warp.h"
 #include "shading/shading_scene.h"
 #include "shading/surface_error.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -43,7 +43,7 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     const uint32_t prim = choose_triangle(light.cumulative_area, choice);
     const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], prim);
     const EmitterTriangle world = instance.identity ? object : world_triangle(transform, object);
-    const TrianglePoint b = warp_triangle(u);
+    const warp::TrianglePoint b = warp::triangle(u);
     const Vec3d p_object = object.p0 + object.e1 * b.b1 + object.e2 * b.b2;
 
     EmitterSample out;

@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "math/warp.h"
 #include "shading/light/emitter.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -35,18 +35,18 @@ struct SphericalRectangle {
     double corner(double x, double y) const { return math::atan2(x * y, -z0 * std::sqrt(x * x + y * y + z0 * z0)); }
 
     /// Position on the rectangle, each coordinate in [-1, 1].
-    DiskPoint position(Vec2 u) const {
+    warp::DiskPoint position(Vec2 u) const {
         // Equations (6) to (9) of the paper.
         const double b0 = -y0 / std::sqrt(y0 * y0 + z0 * z0), b1 = y1 / std::sqrt(y1 * y1 + z0 * z0);
         const double k = std::numbers::pi + f01 - f00;
-        const double angle = cell_middle(u.x) * solid_angle + k;
+        const double angle = warp::cell_middle(u.x) * solid_angle + k;
         const double fu = (math::cos(angle) * b0 - b1) / math::sin(angle);
         const double cu = clamp_to(std::copysign(1 / std::sqrt(fu * fu + b0 * b0), fu), -1.0, 1.0);
         const double xu = clamp_to(-(cu * z0) / std::sqrt(max_of((1 - cu) * (1 + cu), 1e-300)), x0, x1);
         // And (10) for the other coordinate.
         const double d2 = xu * xu + z0 * z0;
         const double h0 = y0 / std::sqrt(d2 + y0 * y0), h1 = y1 / std::sqrt(d2 + y1 * y1);
-        const double h = h0 + cell_middle(u.y) * (h1 - h0);
+        const double h = h0 + warp::cell_middle(u.y) * (h1 - h0);
         const double yv = clamp_to(h * std::sqrt(d2 / max_of((1 - h) * (1 + h), 1e-300)), y0, y1);
         return {2 * (xu - x0) / (x1 - x0) - 1, 2 * (yv - y0) / (y1 - y0) - 1, 0};
     }
@@ -69,13 +69,13 @@ inline std::optional<EmitterSample> sample_emitter(const RectangleEmitter& r, co
     if (r.right_angled) {
         const SphericalRectangle seen(r, from);
         if (seen.solid_angle >= kSmallestSphericalRectangle) {
-            const DiskPoint at = seen.position(u);
+            const warp::DiskPoint at = seen.position(u);
             out.p = r.center + r.half_u * at.x + r.half_v * at.y;
             out.pdf = 1 / seen.solid_angle;
             return out;
         }
     }
-    out.p = r.center + r.half_u * (2 * cell_middle(u.x) - 1) + r.half_v * (2 * cell_middle(u.y) - 1);
+    out.p = r.center + r.half_u * (2 * warp::cell_middle(u.x) - 1) + r.half_v * (2 * warp::cell_middle(u.y) - 1);
     out.pdf = solid_angle_pdf(1 / r.area, out.p - from, r.normal);
     return out;
 }

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "math/transform.h"
+#include "math/warp.h"
 #include "shading/shading_scene.h"
-#include "shading/warp.h"
 
 namespace steradian {
 
@@ -23,21 +23,19 @@ inline std::optional<EmitterSample> sample_emitter(const SphereEmitter& sphere, 
     out.p_error = sphere.p_error;
     if (distance > r) {
         const double cap = sphere_cone(sphere, distance);
-        const double below = cell_middle(u.x) * cap;  // 1 - cos of the chosen direction
-        const double sine2 = below * (2 - below);
-        const double phi = 2 * std::numbers::pi * cell_middle(u.y), sine = std::sqrt(sine2);
-        const Frame3d frame = Frame3d::from_z(to_center * (1 / distance));
-        const Vec3d direction = frame.to_world({sine * math::cos(phi), sine * math::sin(phi), 1 - below});
+        const Vec3d local = warp::cone(u, cap);
+        const Vec3d direction = Frame3d::from_z(to_center * (1 / distance)).to_world(local);
+        const double sine2 = local.x * local.x + local.y * local.y;
         const double chord = std::sqrt(max_of(r * r - distance * distance * sine2, 0.0));
-        out.n = normalize(direction * (distance * (1 - below) - chord) - to_center);
-        out.pdf = 1 / (2 * std::numbers::pi * cap);
+        out.n = normalize(direction * (distance * local.z - chord) - to_center);
+        out.pdf = warp::cone_pdf(cap);
     } else {
         if (!context.two_sided) return std::nullopt;
-        const Vec3d direction = warp_sphere(u);
+        const Vec3d direction = warp::sphere(u);
         const double along = dot(direction, to_center);
         const double chord = std::sqrt(max_of(r * r - distance * distance + along * along, 0.0));
         out.n = normalize(direction * (along + chord) - to_center);
-        out.pdf = 1 / (4 * std::numbers::pi);
+        out.pdf = warp::kSpherePdf;
     }
     out.p = sphere.center + out.n * r;
     return out;
@@ -45,8 +43,8 @@ inline std::optional<EmitterSample> sample_emitter(const SphereEmitter& sphere, 
 
 inline double emitter_pdf(const SphereEmitter& sphere, const EmitterContext&, Vec3d from, Vec3d, Vec3d) {
     const double distance = length(sphere.center - from);
-    if (!(distance > sphere.radius)) return 1 / (4 * std::numbers::pi);
-    return 1 / (2 * std::numbers::pi * sphere_cone(sphere, distance));
+    if (!(distance > sphere.radius)) return warp::kSpherePdf;
+    return warp::cone_pdf(sphere_cone(sphere, distance));
 }
 
 /// Area in the world per area on the object's sphere, at a point with unit outward normal n in the world.
@@ -63,7 +61,7 @@ inline double emitter_pdf(const EllipsoidEmitter& e, const EmitterContext&, Vec3
 
 inline std::optional<EmitterSample> sample_emitter(const EllipsoidEmitter& e, const EmitterContext& context, Vec3d from,
                                                    uint32_t, Vec2 u) {
-    const Vec3d n = warp_sphere(u);
+    const Vec3d n = warp::sphere(u);
     EmitterSample out;
     out.p = transform_point(e.world_from_object, e.center + n * e.radius);
     out.n = normalize(transform_normal_by_inverse(e.object_from_world, n));
