@@ -13,8 +13,9 @@ target_compile_options(steradian_options INTERFACE
   # docs/decisions/0007. The kernels do not depend on the vectoriser.
   $<$<CXX_COMPILER_ID:GNU>:-fno-tree-vectorize>
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  # GCC 12 reports the strings within aggregates that are moved.
+  # GCC 12 reports the strings within aggregates that are moved, and "literal" + string.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<BOOL:${STERADIAN_WERROR}>:-Werror>)
 
 if(STERADIAN_SANITIZE)
