@@ -309,6 +309,7 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("-o,--output", o->outputs,
                   "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
                   ".png in the current folder (with --json: no file)")
+        ->allow_extra_args(false)
         ->group("Output");
     c->add_flag("--half", o->half, "EXR with 16-bit instead of 32-bit floats")->group("Output");
     c->add_option("--exposure", o->write.exposure, "Stops, for PNG (+1: twice as bright)")

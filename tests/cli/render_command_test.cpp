@@ -67,6 +67,11 @@ TEST_F(RenderCommand, WithoutOutputItWritesAPngNamedLikeTheScene) {
     expect_files({"scene.png"});
 }
 
+TEST_F(RenderCommand, OptionsMayComeBeforeTheScene) {
+    EXPECT_EQ(steradian({"render", "-q", "-o", "a.png", "-o", "b.png", "scene.json"}).code, 0);
+    expect_files({"a.png", "b.png"});
+}
+
 TEST_F(RenderCommand, EqualPicturesAreEqualFiles) {
     ASSERT_EQ(steradian({"render", "scene.json", "-o", "a.exr", "-o", "a.png", "--threads", "1"}).code, 0);
     ASSERT_EQ(steradian({"render", "scene.json", "-o", "b.exr", "-o", "b.png", "--threads", "3", "--tile-size", "5",
