@@ -14,7 +14,7 @@ namespace steradian {
 
 struct LoadOptions {
     uint64_t max_file_bytes = uint64_t(4) << 30;  ///< of one file
-    ImageLimits images;
+    ImageLimits images{};
     uint32_t max_depth = 256;  ///< of nested JSON
     /// Assets may be named by absolute paths or leave the scene's folder through "..".
     bool allow_outside_paths = true;
