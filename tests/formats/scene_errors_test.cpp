@@ -285,7 +285,7 @@ TEST(SceneErrors, Lights) {
             "did you mean 'lamp'?");
     refused(lamp + "§{\"type\": \"area\", \"object\": \"lamp\"}]", "missing key 'radiance'");
     refused(lamp + "{\"type\": \"area\", \"object\": \"lamp\", \"radiance\": 1, \"light_samples\": §0}]",
-            "'light_samples' must be a whole number from 1 to 65536, got 0");
+            "'light_samples' must be a whole number from 1 to 4096, got 0");
     refused(lamp +
                 "{\"type\": \"area\", \"object\": \"lamp\", \"radiance\": 1}, {\"type\": \"area\", \"object\": "
                 "§\"lamp\", \"radiance\": 1}]",
