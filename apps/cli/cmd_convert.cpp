@@ -1,13 +1,8 @@
 // steradian convert: a picture from one format to another.
-#include <fmt/format.h>
-
-#include <filesystem>
 #include <memory>
 #include <string>
 
-#include "base/text.h"
 #include "command.h"
-#include "image/tone.h"
 #include "steradian/image_io.h"
 
 namespace steradian::cli {
@@ -15,27 +10,17 @@ namespace {
 
 struct ConvertOptions {
     std::string input, output;
-    ImageWriteOptions write;
-    bool half = false;
-    bool shown = false;  ///< --exposure or --view was given
+    PictureOptions picture;
 };
 
-int usage(std::string message, std::string hint = {}) {
-    return report(Error{ErrorCode::usage, std::move(message), {}, {}, std::move(hint)});
-}
-
 int run_convert(const ConvertOptions& options) {
-    const std::string extension = extension_of(options.output);
-    std::error_code ignored;
-    if (options.input == options.output || std::filesystem::equivalent(options.input, options.output, ignored))
-        return usage("input and output are the same file, which would be replaced", "give the output another name");
-    if (options.shown && extension != ".png")
-        return usage("--exposure and --view are for PNG: the other formats hold linear light as it is");
-    if (options.half && extension != ".exr") return usage("--half is for EXR");
+    const std::string outputs[] = {options.output}, inputs[] = {options.input};
+    if (auto status = check_not_inputs(outputs, inputs); !status) return report(status.error());
+    if (auto status = check_outputs(outputs, options.picture); !status) return report(status.error());
     const auto image = read_image(options.input);
     if (!image) return report(image.error());
     Diagnostics diagnostics;
-    const Status status = write_image(options.output, *image, options.write, &diagnostics);
+    const Status status = write_image(options.output, *image, options.picture.write, &diagnostics);
     report(diagnostics);
     return status ? kDone : report(status.error());
 }
@@ -60,18 +45,8 @@ void add_convert(CLI::App& app, Action& action) {
     c->footer(kFooter);
     c->add_option("IN", options->input, "The picture to read: EXR, HDR, PFM, PNG or JPEG")->required();
     c->add_option("OUT", options->output, "The picture to write: .exr, .hdr, .pfm or .png by its name")->required();
-    auto* exposure =
-        c->add_option("--exposure", options->write.exposure, "Stops of exposure for PNG: each one doubles the light");
-    std::string views;
-    for (const std::string_view view : view_names()) views += (views.empty() ? "" : ", ") + std::string(view);
-    auto* view =
-        c->add_option("--view", options->write.view, "View transform for PNG: " + views)->capture_default_str();
-    c->add_flag("--half", options->half, "EXR in half precision (values beyond 65504 are clamped and counted)");
-    c->callback([options, exposure, view, &action] {
-        options->shown = exposure->count() || view->count();
-        if (options->half) options->write.exr = ExrPrecision::half;
-        action = [options] { return run_convert(*options); };
-    });
+    add_picture_options(c, options->picture, "Options");
+    c->callback([options, &action] { action = [options] { return run_convert(*options); }; });
 }
 
 }  // namespace steradian::cli

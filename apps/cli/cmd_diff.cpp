@@ -1,7 +1,5 @@
 // steradian diff: how far two pictures are apart.
 #include <fmt/format.h>
-#include <rapidjson/prettywriter.h>
-#include <rapidjson/stringbuffer.h>
 
 #include <cmath>
 #include <iostream>
@@ -9,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "base/text.h"
 #include "command.h"
 #include "image/compare.h"
 #include "steradian/image_io.h"
@@ -47,12 +44,12 @@ void print_text(const ImageDifference& d, bool same) {
     std::cout << fmt::format("max     {:.9g}", d.max_abs);
     if (d.max_abs > 0) std::cout << fmt::format(" at pixel ({}, {})", d.max_x, d.max_y);
     std::cout << fmt::format("\npixels  {} with any bit different\n", d.different_pixels);
-    std::cout << (same ? "same" : "different") << std::endl;
+    std::cout << (same ? "same" : "different") << '\n';
 }
 
 void print_json(const ImageDifference& d, bool same) {
     rapidjson::StringBuffer buffer;
-    rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
+    JsonWriter w(buffer);
     const auto number = [&](const char* key, double value) {
         w.Key(key), std::isfinite(value) ? w.Double(value) : w.Null();
     };
@@ -65,27 +62,38 @@ void print_json(const ImageDifference& d, bool same) {
     w.Key("max_at"), w.StartArray(), w.Uint(d.max_x), w.Uint(d.max_y), w.EndArray();
     w.Key("different_pixels"), w.Uint64(d.different_pixels);
     w.EndObject();
-    std::cout << buffer.GetString() << std::endl;
+    std::cout << buffer.GetString() << '\n';
+}
+
+Status write_difference(const DiffOptions& options, const Image& a, const Image& b) {
+    const auto picture = difference_image(a, b);
+    if (!picture) return picture.error();
+    Diagnostics diagnostics;
+    Status status = write_image(options.output, *picture, {}, &diagnostics);
+    report(diagnostics);
+    return status;
+}
+
+Status check(const DiffOptions& options) {
+    if (options.output.empty()) return Ok{};
+    const std::string outputs[] = {options.output}, inputs[] = {options.a, options.b};
+    if (auto status = check_not_inputs(outputs, inputs); !status) return status;
+    return check_outputs(outputs, {});
 }
 
 int run_diff(const DiffOptions& options) {
+    if (auto status = check(options); !status) return trouble(status.error());
     const auto a = read_image(options.a);
     if (!a) return trouble(a.error());
     const auto b = read_image(options.b);
     if (!b) return trouble(b.error());
     const auto difference = compare_images(*a, *b);
     if (!difference) return trouble(difference.error());
-    if (!options.output.empty()) {
-        const auto picture = difference_image(*a, *b);
-        if (!picture) return trouble(picture.error());
-        Diagnostics diagnostics;
-        const Status status = write_image(options.output, *picture, {}, &diagnostics);
-        report(diagnostics);
-        if (!status) return trouble(status.error());
-    }
+    if (!options.output.empty())
+        if (auto status = write_difference(options, *a, *b); !status) return trouble(status.error());
     const bool same = within(*difference, options);
     options.json ? print_json(*difference, same) : print_text(*difference, same);
-    if (!std::cout) return trouble({ErrorCode::resources, "cannot write to standard output", {}, {}, {}});
+    if (auto status = finish_stdout(); !status) return trouble(status.error());
     return same ? kSame : kDifferent;
 }
 

@@ -1,7 +1,5 @@
 // steradian info: what is in a scene or in a picture.
 #include <fmt/format.h>
-#include <rapidjson/prettywriter.h>
-#include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
 #include <iostream>
@@ -121,11 +119,9 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
 void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
     const Scene& scene = loaded.scene;
     rapidjson::StringBuffer buffer;
-    rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
+    JsonWriter w(buffer);
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
-    const auto text = [&](const char* key, std::string_view value) {
-        w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size()));
-    };
+    const auto text = [&](const char* key, std::string_view value) { write_field(w, key, value); };
     w.StartObject();
     text("file", path), text("kind", "scene"), text("hash", scene_hash(scene));
     number("objects", scene.instances.size()), number("shapes", scene.shapes.size()),
@@ -138,7 +134,7 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     for (const Light& light : scene.lights) w.String(kind_of(light));
     w.EndArray();
     w.Key("cameras"), w.StartArray();
-    for (size_t i = 0; i < scene.cameras.size(); ++i) w.String(camera_name(scene, i).c_str());
+    for (size_t i = 0; i < scene.cameras.size(); ++i) write_text(w, camera_name(scene, i));
     w.EndArray();
     if (s.lo.x <= s.hi.x) {
         w.Key("bounds"), w.StartArray();
@@ -157,22 +153,22 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     text("sampler", name_of(r.sampler)), number("seed", r.seed);
     w.EndObject();
     w.EndObject();
-    std::cout << buffer.GetString() << std::endl;
+    std::cout << buffer.GetString() << '\n';
 }
 
-int run_info(const std::string& path, bool json) {
-    static constexpr std::string_view kPictures[] = {".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg"};
-    const std::string extension = extension_of(path);
-    if (std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures)) {
-        const Status status = print_picture_info(path, json, std::cout);
-        return status ? kDone : report(status.error());
-    }
+Status print_scene_info(const std::string& path, bool json) {
     const auto loaded = load_scene(path);
-    if (!loaded) return report(loaded.error());
+    if (!loaded) return loaded.error();
     report(loaded->diagnostics);
     const SceneSummary summary = summarize(loaded->scene);
     json ? print_json(path, *loaded, summary) : print_text(path, *loaded, summary);
-    return kDone;
+    return Ok{};
+}
+
+int run_info(const std::string& path, bool json) {
+    Status status = is_picture(path) ? print_picture_info(path, json, std::cout) : print_scene_info(path, json);
+    if (status) status = finish_stdout();
+    return status ? kDone : report(status.error());
 }
 
 }  // namespace

@@ -1,23 +1,19 @@
 // steradian render: a scene or a model in, pictures out.
 #include <fmt/format.h>
-#include <rapidjson/prettywriter.h>
-#include <rapidjson/stringbuffer.h>
 #include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <vector>
 
-#include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "command.h"
-#include "image/tone.h"
 #include "progress.h"
 #include "scene/names.h"
 #include "steradian/image_io.h"
@@ -27,6 +23,8 @@
 namespace steradian::cli {
 namespace {
 
+constexpr uint32_t kMaxThreads = 1024;
+
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
@@ -34,8 +32,8 @@ struct RenderOptions {
     std::optional<uint32_t> max_depth;
     std::string size, camera, integrator, filter, sampler, crop, bvh = "sah";
     Execution execution;
-    ImageWriteOptions write;
-    bool half = false, quiet = false, json = false;
+    PictureOptions picture;
+    bool quiet = false, json = false;
 };
 
 // --- Signals: the first one asks the job to stop, the second one ends the process at once. ---------------------
@@ -48,13 +46,18 @@ extern "C" void on_signal(int number) {
     if (RenderJob* job = g_job.load()) job->cancel();
 }
 
-/// Watches SIGINT, SIGTERM and SIGHUP while a job runs.
+/// Watches SIGINT, SIGTERM and SIGHUP while a job runs. Those that whoever started us has set to be ignored (nohup, a
+/// script's background job) stay ignored.
 class SignalScope {
 public:
     SignalScope() {
         struct sigaction action {};
         action.sa_handler = on_signal;
-        for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(number, &action, nullptr);
+        for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+            struct sigaction inherited {};
+            ::sigaction(number, nullptr, &inherited);
+            if (inherited.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);
+        }
     }
     ~SignalScope() { g_job = nullptr; }
     void watch(RenderJob* job) {
@@ -64,10 +67,6 @@ public:
 };
 
 // --- Arguments -------------------------------------------------------------------------------------------------
-
-Error usage_error(std::string message, std::string hint = {}) {
-    return {ErrorCode::usage, std::move(message), {}, {}, std::move(hint)};
-}
 
 std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char separator, size_t count) {
     std::vector<uint32_t> out;
@@ -101,6 +100,13 @@ Status apply_filter(const std::string& text, Filter& filter) {
     return Ok{};
 }
 
+std::string camera_hint(const std::string& name, const Scene& scene) {
+    const std::vector<std::string_view> names(scene.names.cameras.begin(), scene.names.cameras.end());
+    if (const auto match = closest_match(name, names)) return "did you mean '" + *match + "'?";
+    if (names.empty()) return fmt::format("the scene's cameras are numbered 0 to {}", scene.cameras.size() - 1);
+    return "the scene has: " + escape_for_display(fmt::format("{}", fmt::join(names, ", ")), 400);
+}
+
 Status apply_camera(const std::string& name, const Scene& scene, uint32_t& camera) {
     const auto& names = scene.names.cameras;
     for (size_t i = 0; i < names.size(); ++i)
@@ -112,9 +118,8 @@ Status apply_camera(const std::string& name, const Scene& scene, uint32_t& camer
         camera = (*number)[0];
         return Ok{};
     }
-    const std::vector<std::string_view> views(names.begin(), names.end());
     return usage_error(fmt::format("--camera: the scene has no camera '{}'", escape_for_display(name)),
-                       suggestion(name, views));
+                       camera_hint(name, scene));
 }
 
 /// What the command line says wins over what the scene says.
@@ -148,32 +153,6 @@ Status apply(const RenderOptions& o, const Scene& scene, RenderSettings& s) {
     return Ok{};
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-    struct stat x {
-    }, y{};
-    return ::stat(a.c_str(), &x) == 0 && ::stat(b.c_str(), &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
-/// Everything about the outputs that can be known before hours of rendering.
-Status check_outputs(const RenderOptions& o) {
-    static constexpr std::string_view kExtensions[] = {".exr", ".hdr", ".pfm", ".png"};
-    for (size_t i = 0; i < o.outputs.size(); ++i) {
-        const std::string& path = o.outputs[i];
-        const std::string extension = extension_of(path);
-        if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions))
-            return usage_error(fmt::format("-o {}: unknown picture format '{}'", escape_for_display(path),
-                                           escape_for_display(extension)),
-                               suggestion(extension, kExtensions));
-        if (same_file(path, o.scene))
-            return usage_error(fmt::format("-o {}: this is the scene itself", escape_for_display(path)));
-        for (size_t j = 0; j < i; ++j)
-            if (o.outputs[j] == path || same_file(o.outputs[j], path))
-                return usage_error(fmt::format("-o {}: given twice", escape_for_display(path)));
-        if (auto status = check_writable(path); !status) return status;
-    }
-    return Ok{};
-}
-
 std::string default_output(const std::string& scene) {
     const size_t slash = scene.find_last_of('/');
     std::string name = slash == std::string::npos ? scene : scene.substr(slash + 1);
@@ -185,16 +164,13 @@ std::string default_output(const std::string& scene) {
 // --- Running ---------------------------------------------------------------------------------------------------
 
 void print_json(const RenderOptions& o, const RenderSettings& s, const RenderResult& r,
-                const Diagnostics& diagnostics) {
+                const std::vector<std::string>& written, const Diagnostics& diagnostics) {
     rapidjson::StringBuffer buffer;
-    rapidjson::PrettyWriter<rapidjson::StringBuffer> w(buffer);
-    const auto text = [&](const char* key, const std::string& value) {
-        w.Key(key), w.String(value.data(), rapidjson::SizeType(value.size()));
-    };
+    JsonWriter w(buffer);
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
     w.StartObject();
-    text("scene", o.scene);
-    text("hash", image_hash(r.image));
+    write_field(w, "scene", o.scene);
+    write_field(w, "hash", image_hash(r.image));
     number("width", r.image.width), number("height", r.image.height);
     number("spp", s.samples_per_pixel);
     w.Key("complete"), w.Bool(r.complete);
@@ -207,20 +183,20 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     number("threads", r.statistics.threads);
     w.Key("seconds"), w.Double(r.statistics.seconds);
     w.Key("outputs"), w.StartArray();
-    for (const std::string& path : o.outputs) w.String(path.c_str());
+    for (const std::string& path : written) write_text(w, path);
     w.EndArray();
     w.Key("warnings"), w.StartArray();
-    for (const Warning& warning : diagnostics.warnings()) w.String(warning.str().c_str());
+    for (const Warning& warning : diagnostics.warnings()) write_text(w, warning.str());
     w.EndArray();
     w.EndObject();
-    std::cout << buffer.GetString() << std::endl;
+    std::cout << buffer.GetString() << '\n';
 }
 
-void print_summary(const RenderOptions& o, const RenderSettings& s, const RenderResult& r) {
+void print_summary(const RenderSettings& s, const RenderResult& r, const std::vector<std::string>& written) {
     const uint64_t rays = r.statistics.camera_rays + r.statistics.specular_rays + r.statistics.shadow_rays;
     const double seconds = std::max(r.statistics.seconds, 1e-9);
     std::string outputs;
-    for (const std::string& path : o.outputs) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
+    for (const std::string& path : written) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
     std::cerr << fmt::format(
         "{}x{}, {} samples per pixel in {} ({} rays/s, {} threads){}{}\n", r.image.width, r.image.height,
         r.complete ? fmt::format("{}", s.samples_per_pixel)
@@ -251,17 +227,42 @@ Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const Rende
     return result;
 }
 
+/// Tries every output, whatever becomes of the others, and reports the failures. Returns those that were written.
+std::vector<std::string> write_outputs(const RenderOptions& o, const Image& image, Diagnostics& diagnostics) {
+    std::vector<std::string> written;
+    for (const std::string& path : o.outputs) {
+        const Status status = write_image(path, image, o.picture.write, &diagnostics);
+        status ? written.push_back(path) : void(report(status.error()));
+    }
+    return written;
+}
+
+/// What there is to say and to save once the picture is there.
+int finish(const RenderOptions& o, const RenderSettings& settings, const RenderResult& result,
+           Diagnostics diagnostics) {
+    Diagnostics afterwards;
+    warn_bad_samples(result.statistics, afterwards);
+    const std::vector<std::string> written = write_outputs(o, result.image, afterwards);
+    if (!o.quiet) report(afterwards), print_summary(settings, result, written);
+    diagnostics.append(afterwards);
+    if (o.json) print_json(o, settings, result, written, diagnostics);
+    if (auto status = finish_stdout(); !status) return report(status.error());
+    if (written.size() < o.outputs.size()) return kResources;
+    const int signal = g_signal.load();
+    return signal != 0 ? 128 + signal : kDone;
+}
+
 int run_render(RenderOptions o) {
     SignalScope signals;
     if (o.outputs.empty() && !o.json) o.outputs.push_back(default_output(o.scene));
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
-    if (o.half) o.write.exr = ExrPrecision::half;
-    if (auto status = check_outputs(o); !status) return report(status.error());
+    if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
 
     const uint32_t threads = o.execution.threads ? o.execution.threads : hardware_threads();
-    const ThreadLimit limit(std::min(threads, 1024u));
+    const ThreadLimit limit(std::min(threads, kMaxThreads));
     auto loaded = load_scene(o.scene);
     if (!loaded) return report(loaded.error());
+    if (auto status = check_not_inputs(o.outputs, loaded->files); !status) return report(status.error());
     RenderSettings settings = loaded->settings;
     if (auto status = apply(o, loaded->scene, settings); !status) return report(status.error());
     Diagnostics diagnostics = std::move(loaded->diagnostics);
@@ -269,26 +270,14 @@ int run_render(RenderOptions o) {
     if (!scene) return report(scene.error());
     if (!o.quiet) report(diagnostics);
 
-    auto result = run_job(o, std::move(*scene), settings, signals);
+    const auto result = run_job(o, std::move(*scene), settings, signals);
     if (!result) return report(result.error());
-    const int signal = g_signal.load();
-    if (signal != 0 && result->max_samples == 0) {
+    if (g_signal != 0 && result->max_samples == 0) {
         std::cerr << "stopped before the first samples were done: nothing was written\n";
-        return 128 + signal;
+        return 128 + g_signal;
     }
-    Diagnostics afterwards;
-    warn_bad_samples(result->statistics, afterwards);
-    for (const std::string& path : o.outputs)
-        if (auto status = write_image(path, result->image, o.write, &afterwards); !status)
-            return report(status.error());
-    if (!o.quiet) report(afterwards), print_summary(o, settings, *result);
-    diagnostics.append(afterwards);
-    if (o.json) print_json(o, settings, *result, diagnostics);
-    return signal != 0 ? 128 + signal : kDone;
+    return finish(o, settings, *result, std::move(diagnostics));
 }
-
-/// CLI11 reads "-1" as a huge unsigned number.
-std::string not_negative(const std::string& text) { return text.starts_with('-') ? "must not be negative" : ""; }
 
 template <class Kind>
 CLI::IsMember one_of() {
@@ -311,17 +300,9 @@ void add_render(CLI::App& app, Action& action) {
                   ".png in the current folder (with --json: no file)")
         ->allow_extra_args(false)
         ->group("Output");
-    c->add_flag("--half", o->half, "EXR with 16-bit instead of 32-bit floats")->group("Output");
-    c->add_option("--exposure", o->write.exposure, "Stops, for PNG (+1: twice as bright)")
-        ->check(CLI::Range(-100.0, 100.0))
-        ->group("Output");
-    std::vector<std::string> views(view_names().begin(), view_names().end());
-    c->add_option("--view", o->write.view, "View transform for PNG")
-        ->check(CLI::IsMember(views))
-        ->capture_default_str()
-        ->group("Output");
-    c->add_option("--spp", o->spp, "Samples per pixel; the noise falls with their square root")
-        ->check(not_negative)
+    add_picture_options(c, o->picture, "Output");
+    add_count<uint64_t>(c, "--spp", o->spp, 1, kMaxSamplesPerPixel,
+                        "Samples per pixel; the noise falls with their square root")
         ->group("Picture");
     c->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->group("Picture");
     c->add_option("--crop", o->crop,
@@ -332,8 +313,8 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("--integrator", o->integrator, "How light is computed: direct")
         ->check(one_of<IntegratorKind>())
         ->group("Picture");
-    c->add_option("--max-depth", o->max_depth, "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")
-        ->check(not_negative)
+    add_count<uint32_t>(c, "--max-depth", o->max_depth, 0, kMaxDepth,
+                        "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")
         ->group("Picture");
     c->add_option("--filter", o->filter,
                   "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
@@ -341,23 +322,22 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")
         ->check(one_of<SamplerKind>())
         ->group("Picture");
-    c->add_option("--seed", o->seed, "Another seed gives another, equally good noise pattern")
-        ->check(not_negative)
+    add_count<uint64_t>(c, "--seed", o->seed, 0, std::numeric_limits<uint64_t>::max(),
+                        "Another seed gives another, equally good noise pattern")
         ->group("Picture");
-    c->add_option("--threads", o->execution.threads, "0: all the machine has; never changes the picture")
-        ->check(CLI::Range(0, 1024))
+    add_count<uint32_t>(c, "--threads", o->execution.threads, 0, kMaxThreads,
+                        "0: all the machine has; never changes the picture")
         ->group("Execution");
-    c->add_option("--tile-size", o->execution.tile_size, "Pixels, 1 to 256; never changes the picture")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str()
+    add_count<uint32_t>(c, "--tile-size", o->execution.tile_size, 1, 256, "Pixels, 1 to 256; never changes the picture")
+        ->default_str(std::to_string(o->execution.tile_size))
         ->group("Execution");
     c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")
         ->check(one_of<BvhBuilder>())
         ->capture_default_str()
         ->group("Execution");
-    c->add_option("--bvh-max-depth", o->execution.bvh_max_depth, "Levels of the hierarchy; never changes the picture")
-        ->check(CLI::Range(1, 64))
-        ->capture_default_str()
+    add_count<uint32_t>(c, "--bvh-max-depth", o->execution.bvh_max_depth, 1, 64,
+                        "Levels of the hierarchy; never changes the picture")
+        ->default_str(std::to_string(o->execution.bvh_max_depth))
         ->group("Execution");
     c->add_flag("-q,--quiet", o->quiet, "Only errors");
     c->add_flag("--json", o->json, "Statistics and the picture's hash as JSON on standard output");

@@ -1,30 +1,93 @@
 // What the subcommands share.
 #pragma once
 
+#include <rapidjson/prettywriter.h>
+#include <rapidjson/stringbuffer.h>
+
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "steradian/image_io.h"
 #include "steradian/result.h"
 
 namespace steradian::cli {
 
-/// docs/conventions.md, "exit codes". `diff` has its own: 0 same within the bound, 1 different, 2 trouble.
+/// docs/conventions.md, "exit codes". `diff` has its own: 0 same within the bound, 1 different, 2 trouble. A command
+/// that a signal stopped ends with 128 + its number.
 enum ExitCode : int {
     kDone = 0,
     kRenderFailed = 1,
     kUsage = 2,
     kBadInput = 3,
     kResources = 4,
-    kInterrupted = 130,
-    kTerminated = 143,
 };
 
 int exit_code(ErrorCode code);
 /// Prints the error to standard error and returns its exit code.
 int report(const Error& error);
 void report(const Diagnostics& diagnostics);
+/// Flushes standard output; an error when any of it could not be written. Call it after the last line.
+Status finish_stdout();
+
+// --- Options ---------------------------------------------------------------------------------------------------
+
+Error usage_error(std::string message, std::string hint = {});
+
+/// A whole decimal number from `lowest` to `highest`: no sign, no 0x, no exponent. Throws CLI::ValidationError, which
+/// names the option.
+uint64_t parse_count(const std::string& option, const std::string& text, uint64_t lowest, uint64_t highest);
+/// A finite number from `lowest` to `highest`; throws as above.
+double parse_real(const std::string& option, const std::string& text, double lowest, double highest);
+
+/// An option with a whole number. `names` is as for add_option, the long name last; `value` is a T or std::optional<T>.
+template <class T, class Value>
+CLI::Option* add_count(CLI::App* c, const std::string& names, Value& value, T lowest, T highest,
+                       const std::string& help) {
+    const auto set = [&value, name = names.substr(names.rfind(',') + 1), lowest, highest](const std::string& text) {
+        value = static_cast<T>(parse_count(name, text, lowest, highest));
+    };
+    return c->add_option_function<std::string>(names, set, help)->type_name("COUNT");
+}
+
+/// How pictures are to be written; one set of options for all commands that choose it.
+struct PictureOptions {
+    ImageWriteOptions write;
+    bool png_only = false;  ///< --exposure or --view was given
+    bool exr_only = false;  ///< --half was given
+};
+void add_picture_options(CLI::App* c, PictureOptions& options, const std::string& group);
+
+// --- Files -----------------------------------------------------------------------------------------------------
+
+inline constexpr std::string_view kWritablePictures[] = {".exr", ".hdr", ".pfm", ".png"};
+
+/// By the file's content where it can be read, else by its name.
+bool is_picture(const std::string& path);
+
+/// Whether two paths lead to one file, be it there already or not.
+bool same_file(const std::string& a, const std::string& b);
+
+/// Everything about outputs that can be known before the work: formats, duplicates, places, options without effect.
+Status check_outputs(std::span<const std::string> outputs, const PictureOptions& options);
+/// No output may replace something that was read.
+Status check_not_inputs(std::span<const std::string> outputs, std::span<const std::string> inputs);
+
+// --- JSON ------------------------------------------------------------------------------------------------------
+
+using JsonWriter = rapidjson::PrettyWriter<rapidjson::StringBuffer>;
+
+/// JSON is UTF-8; bytes that are not, as file names may have, appear as \xNN.
+void write_text(JsonWriter& w, std::string_view text);
+void write_field(JsonWriter& w, const char* key, std::string_view text);
+
+// ---------------------------------------------------------------------------------------------------------------
 
 /// Every subcommand registers itself and, when chosen, leaves what is to be run in `action`.
 using Action = std::function<int()>;

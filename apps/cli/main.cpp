@@ -29,7 +29,8 @@ constexpr const char* kExamples =
     "  steradian diff a.exr b.exr                            how far two pictures are apart\n"
     "\n"
     "Each command has its own help: steradian render --help\n"
-    "Exit codes: 0 done, 1 render failed, 2 usage, 3 bad scene or image, 4 disk, memory or a limit, 130/143 stopped.";
+    "Exit codes: 0 done, 1 render failed, 2 usage, 3 bad scene or image, 4 disk, memory or a limit, 129/130/143 "
+    "stopped.";
 
 /// CLI11 would only say that a subcommand is required.
 std::optional<Error> unknown_command(const CLI::App& app, std::string_view word) {
@@ -38,6 +39,13 @@ std::optional<Error> unknown_command(const CLI::App& app, std::string_view word)
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
     return make_error(ErrorCode::usage, "unknown command '" + escape_for_display(word) + "'", suggestion(word, names));
+}
+
+/// The arguments may hold foreign bytes, and CLI11 repeats them as they are.
+Error wrong_arguments(const CLI::App& app, const CLI::ParseError& e) {
+    const auto chosen = app.get_subcommands();
+    const std::string name = chosen.empty() ? "" : chosen.front()->get_name() + " ";
+    return usage_error(escape_for_display(e.what(), 4096), "steradian " + name + "--help shows what there is");
 }
 
 int run(int argc, char** argv) {
@@ -58,7 +66,10 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? kDone : kUsage;
+        if (e.get_exit_code() != 0) return report(wrong_arguments(app, e));
+        app.exit(e);  // help or version
+        const Status status = finish_stdout();
+        return status ? kDone : report(status.error());
     }
     return action();
 }

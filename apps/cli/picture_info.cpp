@@ -1,8 +1,6 @@
 #include "picture_info.h"
 
 #include <fmt/format.h>
-#include <rapidjson/prettywriter.h>
-#include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "command.h"
 #include "image/decode.h"
 
 namespace steradian::cli {
@@ -83,19 +82,11 @@ void print_text(const std::string& path, ImageFileKind kind, const Image& image,
         out << fmt::format("  {} = {}\n", escape_for_display(key, 80), escape_for_display(text, 400));
 }
 
-using Writer = rapidjson::PrettyWriter<rapidjson::StringBuffer>;
-
-/// JSON is UTF-8; bytes of a file that are not appear as \xNN.
-void write_text(Writer& w, const std::string& text) {
-    const std::string safe = escape_for_display(text, 1 << 20);
-    w.String(safe.data(), static_cast<rapidjson::SizeType>(safe.size()));
-}
-
 void print_json(const std::string& path, ImageFileKind kind, const Image& image, std::ostream& out) {
     rapidjson::StringBuffer buffer;
-    Writer w(buffer);
+    JsonWriter w(buffer);
     w.StartObject();
-    w.Key("file"), write_text(w, path);
+    write_field(w, "file", path);
     w.Key("kind"), w.String("picture");
     w.Key("format"), w.String(name_of(kind));
     w.Key("hash"), w.String(image_hash(image).c_str());
@@ -107,7 +98,7 @@ void print_json(const std::string& path, ImageFileKind kind, const Image& image,
         const ChannelSummary& c = channels[i];
         const auto number = [&](const char* key, double value) { w.Key(key), c.finite ? w.Double(value) : w.Null(); };
         w.StartObject();
-        w.Key("name"), write_text(w, image.channels[i]);
+        write_field(w, "name", image.channels[i]);
         number("min", c.min), number("mean", c.mean()), number("max", c.max);
         w.Key("nan"), w.Uint64(c.nan);
         w.Key("infinite"), w.Uint64(c.inf);
@@ -134,8 +125,6 @@ Status print_picture_info(const std::string& path, bool json, std::ostream& out)
     if (!image) return image.error();
     const ImageFileKind kind = image_kind(*bytes);
     json ? print_json(path, kind, *image, out) : print_text(path, kind, *image, out);
-    out.flush();
-    if (!out) return Error{ErrorCode::resources, "cannot write to standard output", {}, {}, {}};
     return Ok{};
 }
 

@@ -52,6 +52,8 @@ void on_write(png_structp png, png_bytep data, size_t size) {
 bool write_png(Writer& writer, png_structp png, png_infop info) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_write_fn(png, &writer, on_write, nullptr);
+    // What the format can hold, not libpng's guard of a million against hostile files.
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     // Fixed, so that equal pictures are equal files.
     png_set_compression_level(png, 6);
     png_set_compression_strategy(png, Z_DEFAULT_STRATEGY);
