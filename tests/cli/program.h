@@ -2,11 +2,14 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,10 +23,19 @@ struct Outcome {
     std::string out, err;
 };
 
+template <uint64_t kBytes>
+void limit_files() {
+    const rlimit limit{kBytes, kBytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+inline void full_stdout() { ::dup2(::open("/dev/full", O_WRONLY), 1); }
+
 /// The program as a child process; output goes to files in `folder`, which is also its working directory.
 class Process {
 public:
-    Process(const TemporaryFolder& folder, const std::vector<std::string>& arguments, uint64_t max_file_bytes = 0)
+    /// `before` runs in the child, before the program does.
+    Process(const TemporaryFolder& folder, const std::vector<std::string>& arguments, void (*before)() = nullptr)
         : out_(folder.file("stdout.txt")), err_(folder.file("stderr.txt")) {
         std::vector<std::string> all{STERADIAN_PROGRAM};
         all.insert(all.end(), arguments.begin(), arguments.end());
@@ -36,7 +48,8 @@ public:
                   err = ::open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         ::dup2(null, 0), ::dup2(out, 1), ::dup2(err, 2);
         if (::chdir(folder.path().c_str()) != 0) ::_exit(126);
-        if (max_file_bytes) limit_files(max_file_bytes);
+        for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_DFL);  // however the tests were started
+        if (before) before();
         ::execv(argv[0], argv.data());
         ::_exit(127);
     }
@@ -59,10 +72,6 @@ public:
     }
 
 private:
-    static void limit_files(uint64_t bytes) {
-        const rlimit limit{bytes, bytes};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
     std::string out_, err_;
     pid_t pid_ = 0;
 };
@@ -70,5 +79,38 @@ private:
 inline Outcome run(const TemporaryFolder& folder, const std::vector<std::string>& arguments) {
     return Process(folder, arguments).wait();
 }
+
+inline constexpr const char* kScene = R"({
+  "version": 1,
+  "render": {"spp": 4},
+  "film": {"resolution": [32, 24]},
+  "cameras": {"front": {"position": [0, 0, 5], "look_at": [0, 0, 0]}, "side": {"position": [5, 0, 0], "look_at": [0, 0, 0]}},
+  "materials": {"white": {"type": "diffuse", "reflectance": [0.8, 0.8, 0.8]}},
+  "objects": [{"type": "sphere", "radius": 1, "material": "white"}],
+  "lights": [{"type": "environment", "radiance": [1, 1, 1]}, {"type": "point", "position": [2, 2, 2], "flux": [50, 50, 50]}]
+})";
+
+/// A folder with scene.json in it.
+class CommandTest : public testing::Test {
+protected:
+    CommandTest() { spit(folder_.file("scene.json"), kScene); }
+
+    Outcome steradian(const std::vector<std::string>& arguments) { return run(folder_, arguments); }
+    bool exists(const std::string& name) const { return std::filesystem::exists(folder_.file(name)); }
+    /// Nothing but these files is in the folder: no leftovers.
+    void expect_files(std::vector<std::string> names) const {
+        names.insert(names.end(), {"scene.json", "stdout.txt", "stderr.txt"});
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+            EXPECT_NE(std::find(names.begin(), names.end(), entry.path().filename()), names.end()) << entry.path();
+    }
+    static std::string field(const std::string& json, const std::string& key) {
+        const size_t at = json.find("\"" + key + "\":");
+        if (at == std::string::npos) return "(no " + key + ")";
+        const size_t begin = json.find_first_not_of(" \"", at + key.size() + 3);
+        return json.substr(begin, json.find_first_of("\",\n", begin) - begin);
+    }
+
+    TemporaryFolder folder_;
+};
 
 }  // namespace steradian::test

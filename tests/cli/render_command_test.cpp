@@ -14,37 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScene = R"({
-  "version": 1,
-  "render": {"spp": 4},
-  "film": {"resolution": [32, 24]},
-  "cameras": {"front": {"position": [0, 0, 5], "look_at": [0, 0, 0]}, "side": {"position": [5, 0, 0], "look_at": [0, 0, 0]}},
-  "materials": {"white": {"type": "diffuse", "reflectance": [0.8, 0.8, 0.8]}},
-  "objects": [{"type": "sphere", "radius": 1, "material": "white"}],
-  "lights": [{"type": "environment", "radiance": [1, 1, 1]}, {"type": "point", "position": [2, 2, 2], "flux": [50, 50, 50]}]
-})";
-
-class RenderCommand : public testing::Test {
-protected:
-    RenderCommand() { spit(folder_.file("scene.json"), kScene); }
-
-    Outcome steradian(const std::vector<std::string>& arguments) { return run(folder_, arguments); }
-    bool exists(const std::string& name) const { return fs::exists(folder_.file(name)); }
-    /// Nothing but these files is in the folder: no leftovers.
-    void expect_files(std::vector<std::string> names) const {
-        names.insert(names.end(), {"scene.json", "stdout.txt", "stderr.txt"});
-        for (const auto& entry : fs::directory_iterator(folder_.path()))
-            EXPECT_NE(std::find(names.begin(), names.end(), entry.path().filename()), names.end()) << entry.path();
-    }
-    static std::string field(const std::string& json, const std::string& key) {
-        const size_t at = json.find("\"" + key + "\":");
-        if (at == std::string::npos) return "(no " + key + ")";
-        const size_t begin = json.find_first_not_of(" \"", at + key.size() + 3);
-        return json.substr(begin, json.find_first_of("\",\n", begin) - begin);
-    }
-
-    TemporaryFolder folder_;
-};
+class RenderCommand : public CommandTest {};
 
 TEST_F(RenderCommand, WritesEveryFormatWithTheSamePicture) {
     const Outcome o =
@@ -115,9 +85,9 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
     expect({"rendre"}, "did you mean 'render'?");
     expect({"render"}, "SCENE is required");
     expect({"render", "scene.json", "--spp", "many"}, "--spp");
-    expect({"render", "scene.json", "--spp", "-1"}, "--spp: must not be negative");
-    expect({"render", "scene.json", "--spp", "0"}, "expected 1 to");
-    expect({"render", "scene.json", "--spp", "9223372036854775808"}, "expected 1 to");
+    expect({"render", "scene.json", "--spp", "-1"}, "--spp: expected a whole number from 1 to 1000000000, not '-1'");
+    expect({"render", "scene.json", "--spp", "0"}, "whole number from 1 to");
+    expect({"render", "scene.json", "--spp", "9223372036854775808"}, "whole number from 1 to");
     expect({"render", "scene.json", "--size", "10"}, "WIDTHxHEIGHT");
     expect({"render", "scene.json", "--size", "0x5"}, "at least 1");
     expect({"render", "scene.json", "--filter", "gausian"}, "did you mean 'gaussian'?");
@@ -169,7 +139,8 @@ TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeRendering) {
 TEST_F(RenderCommand, AWriteThatFailsKeepsTheOldFile) {
     spit(folder_.file("a.pfm"), "precious");
     const Outcome o =
-        Process(folder_, {"render", "scene.json", "--size", "200x200", "--spp", "1", "-o", "a.pfm"}, 4096).wait();
+        Process(folder_, {"render", "scene.json", "--size", "200x200", "--spp", "1", "-o", "a.pfm"}, limit_files<4096>)
+            .wait();
     EXPECT_EQ(o.code, 4) << o.err;
     EXPECT_EQ(slurp(folder_.file("a.pfm")), "precious");
     expect_files({"a.pfm"});
@@ -199,7 +170,8 @@ TEST_P(RenderSignal, StopsWithWhatIsDone) {
     expect_files({"a.exr"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, RenderSignal, testing::Values(std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}));
+INSTANTIATE_TEST_SUITE_P(Each, RenderSignal,
+                         testing::Values(std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}, std::pair{SIGHUP, 129}));
 
 TEST_F(RenderCommand, StrangeNamesWork) {
     for (const char* name : {"with space.json", "d%20.json", "\xf0\x9f\x90\xb0.json", "\xff\xfe.json", "-dash.json"}) {
