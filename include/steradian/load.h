@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "steradian/image.h"
 #include "steradian/result.h"
@@ -25,6 +26,7 @@ struct LoadedScene {
     Scene scene;
     RenderSettings settings;
     Diagnostics diagnostics;
+    std::vector<std::string> files;  ///< every file that was read, the scene itself first: outputs must not be among them
 };
 
 /// By extension: .json (Steradian's own format and the course vocabulary), .obj, .ply. A bare model gets a camera that

@@ -67,7 +67,7 @@ public:
     virtual bool wait_for(double seconds) = 0;
     virtual RenderProgress progress() const = 0;
     /// The picture as it is now, from whole sample blocks of each tile; pixels without samples are 0.
-    virtual Image snapshot() const = 0;
+    virtual Result<Image> snapshot() const = 0;
     /// Blocks until the end and hands the result over, once.
     virtual Result<RenderResult> take() = 0;
 };

@@ -31,7 +31,7 @@ struct RenderSettings {
     uint32_t height = 512;
     std::optional<Crop> crop;
     IntegratorKind integrator = IntegratorKind::direct;
-    uint32_t max_depth = 16;          ///< bounces, specular ones too: 0 emission, 1 direct light
+    uint32_t max_depth = 16;          ///< bounces, specular ones too: 0 emission, 1 direct light; at most kMaxDepth
     uint64_t samples_per_pixel = 64;  ///< 1 … kMaxSamplesPerPixel
     SamplerKind sampler = SamplerKind::sobol;
     uint64_t seed = 0;
@@ -40,6 +40,8 @@ struct RenderSettings {
 };
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
+inline constexpr uint32_t kMaxDepth = 65535;                  ///< bounces
+inline constexpr double kMinFilterRadius = 0.01, kMaxFilterRadius = 32;  ///< pixels
 inline constexpr uint32_t kMaxResolution = 1u << 20;       ///< of one side
 inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;  ///< width × height
 

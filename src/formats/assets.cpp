@@ -81,6 +81,7 @@ Result<ImageId> Assets::open_image(const std::string& path) {
     if (const auto known = images_.find(key); known != images_.end()) return known->second;
     auto texels = read_texels(path, options_.images);
     if (!texels) return std::move(texels).error();
+    loaded_.files.push_back(path);
     const ImageId id = add<ImageId>(loaded_.scene.images, std::move(*texels));
     loaded_.scene.names.images.push_back(path);
     images_.emplace(key, id);
@@ -100,6 +101,8 @@ Result<size_t> Assets::load_model(std::string_view named) {
     auto file = load_mesh_file(*path, options_);
     if (!file) return std::move(file).error();
     loaded_.diagnostics.append(file->diagnostics);
+    loaded_.files.push_back(*path);
+    loaded_.files.insert(loaded_.files.end(), file->libraries.begin(), file->libraries.end());
     if (file->parts.empty()) loaded_.diagnostics.warn("the model has no faces", {*path, 0, 0, {}});
     Model model;
     for (MeshPart& part : file->parts) {
@@ -157,14 +160,23 @@ Result<MaterialId> Assets::convert(const MeshMaterial& from) {
     if (from.illum == 3)
         return add_material(MirrorMaterial{max_component(from.specular) > 0 ? from.specular : Rgb{1, 1, 1}}, from.name);
     if (from.dissolve < 1) loaded_.diagnostics.warn("partly transparent materials (d, Tr) are rendered opaque");
-    if (from.diffuse_map.empty()) return add_diffuse(from.diffuse, true, from.name);
+    if (from.diffuse_map.empty()) {
+        if (max_component(from.diffuse) > 1)
+            loaded_.diagnostics.warn("a material's Kd above 1 adds energy: surfaces like this do not exist");
+        return add_diffuse(from.diffuse, true, from.name);
+    }
 
     // The mesh reader resolved it against the MTL file's folder.
     if (has_scheme(from.diffuse_map)) return address_error(from.diffuse_map);
     if (!options_.allow_outside_paths)
         if (auto inside = check_inside(from.diffuse_map); !inside) return std::move(inside).error();
     auto texels = open_image(from.diffuse_map);
-    if (!texels) return std::move(texels).error();
+    if (!texels) {
+        Error error = std::move(texels).error();
+        error.message = "texture " + escape_for_display(from.diffuse_map, 4096) + ": " + error.message;
+        error.where = from.diffuse_map_where;
+        return error;
+    }
     ImageTexture texture;
     texture.image = *texels;
     texture.color_space = default_color_space(*texels);

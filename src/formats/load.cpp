@@ -65,7 +65,9 @@ Result<LoadedScene> read_json(std::string_view text, const std::string& name, co
 Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& options) {
     auto text = read_file(path, options.max_file_bytes);
     if (!text) return std::move(text).error();
-    return load_scene_json(*text, path, folder_of_file(path), options);
+    auto loaded = load_scene_json(*text, path, folder_of_file(path), options);
+    if (loaded) loaded->files.insert(loaded->files.begin(), path);
+    return loaded;
 }
 
 Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& options) {

@@ -15,6 +15,7 @@ struct MeshMaterial {
     std::string name;
     Rgb diffuse{0.6f, 0.6f, 0.6f};           ///< Kd, linear
     std::string diffuse_map;                 ///< map_Kd; empty: none
+    SourceLocation diffuse_map_where;        ///< of that name, for messages about the file
     Vec2 map_scale{1, 1}, map_offset{0, 0};  ///< uv * scale + offset, for uvs as in Mesh (v downwards)
     bool map_clamp = false;
     Rgb emission{0, 0, 0};      ///< Ke, taken as radiance
@@ -36,6 +37,7 @@ struct MeshFile {
     std::vector<MeshPart> parts;          ///< in order of first use; empty when the file has no faces
     std::vector<MeshMaterial> materials;  ///< those that parts use, in order of first use
     Diagnostics diagnostics;
+    std::vector<std::string> libraries;  ///< the MTL files that were read
 };
 
 /// By extension, .obj or .ply. UVs are flipped to Steradian's convention (v downwards).

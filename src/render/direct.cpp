@@ -44,12 +44,18 @@ public:
             const uint32_t samples = std::min(step, unit.samples - done);
             generate(unit, unit.first_sample + done, samples, counters);
             for (uint32_t depth = 0; !active_.empty(); ++depth) {
-                if (c_.cancelled.load(std::memory_order_relaxed)) return false;
                 advance(depth, counters);
+                if (stopped()) return false;
             }
             accumulate(pixels * samples, sums, counters);
         }
         return true;
+    }
+
+    static uint64_t bytes(uint32_t max_tile_pixels) noexcept {
+        constexpr uint64_t path = sizeof(Path) + 2 * (sizeof(uint32_t) + sizeof(Ray)) + sizeof(Hit);
+        return std::max(max_tile_pixels, kBatchPaths) * path +
+               kBatchShadowRays * (sizeof(Ray) + sizeof(Connection) + sizeof(uint8_t));
     }
 
 private:
@@ -91,10 +97,12 @@ private:
     /// One bounce of all paths that are still on their way.
     void advance(uint32_t depth, Counters& counters) noexcept {
         const std::span<Hit> hits(hits_.data(), rays_.size());
-        c_.scene.accel.intersect(rays_, hits);
+        in_slices(rays_, [&](std::span<const Ray> rays, size_t first) {
+            c_.scene.accel.intersect(rays, hits.subspan(first, rays.size()));
+        });
         next_active_.clear();
         next_rays_.clear();
-        for (size_t i = 0; i < hits.size(); ++i) shade(active_[i], rays_[i], hits[i], depth, counters);
+        for (size_t i = 0; i < hits.size() && !stopped(); ++i) shade(active_[i], rays_[i], hits[i], depth, counters);
         trace_shadow_rays(counters);
         counters.specular_rays += next_rays_.size();
         active_.swap(next_active_);
@@ -136,7 +144,7 @@ private:
         Path& path = paths_[id];
         const SurfacePoint from = facing(point, wo);  // the side that receives
         const auto lights = static_cast<uint32_t>(shading_.scene.lights.size());
-        for (uint32_t light = 0; light < lights; ++light) {
+        for (uint32_t light = 0; light < lights && !stopped(); ++light) {
             const uint32_t n = light_sample_count(shading_, light);
             const Rgb scale = path.throughput / static_cast<float>(n);
             const uint32_t dimension = kLightDimension + 4 * light;
@@ -158,7 +166,9 @@ private:
 
     void trace_shadow_rays(Counters& counters) noexcept {
         const std::span<uint8_t> occluded(occluded_.data(), shadow_rays_.size());
-        c_.scene.accel.occluded(shadow_rays_, occluded);
+        in_slices(shadow_rays_, [&](std::span<const Ray> rays, size_t first) {
+            c_.scene.accel.occluded(rays, occluded.subspan(first, rays.size()));
+        });
         for (size_t i = 0; i < occluded.size(); ++i) {
             if (occluded[i]) continue;
             Rgb& radiance = paths_[connections_[i].path].radiance;
@@ -167,6 +177,20 @@ private:
         counters.shadow_rays += shadow_rays_.size();
         shadow_rays_.clear();
         connections_.clear();
+    }
+
+    bool stopped() const noexcept { return c_.cancelled.load(std::memory_order_relaxed); }
+
+    /// Calls trace(some rays, index of the first) until all are done or the job is cancelled: a cancelled job must not
+    /// wait for thousands of rays, which in a hostile scene take milliseconds each.
+    template <class Trace>
+    void in_slices(std::span<const Ray> rays, Trace trace) const noexcept {
+        constexpr size_t kSlice = 512;
+        for (size_t first = 0; first < rays.size() && !stopped(); first += kSlice) {
+            const std::span<const Ray> slice = rays.subspan(first, std::min(kSlice, rays.size() - first));
+            trace(slice, first);
+            c_.rays.fetch_add(slice.size(), std::memory_order_relaxed);
+        }
     }
 
     void accumulate(uint32_t count, std::span<RgbSum> sums, Counters& counters) noexcept {
@@ -193,6 +217,8 @@ private:
 };
 
 }  // namespace
+
+uint64_t direct_integrator_bytes(uint32_t max_tile_pixels) noexcept { return DirectIntegrator::bytes(max_tile_pixels); }
 
 void Counters::bad(const BadSample& sample) {
     ++bad_samples;

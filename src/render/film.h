@@ -40,6 +40,8 @@ class Film {
 public:
     Film(Crop window, uint32_t tile_size);
 
+    /// What a tile takes besides its sums, for estimates of memory.
+    static size_t tile_bytes() noexcept { return sizeof(Tile) + sizeof(TileRect); }
     size_t tiles() const noexcept { return tiles_.size(); }
     const TileRect& rect(size_t tile) const noexcept { return tiles_[tile].rect; }
 

@@ -29,7 +29,6 @@ struct Counters {
 
     void bad(const BadSample& sample);
     void add(const Counters& other);
-    uint64_t rays() const { return camera_rays + specular_rays + shadow_rays; }
 };
 
 /// Everything that is the same for all units of a job.
@@ -40,6 +39,7 @@ struct RenderContext {
     FilterSampler filter;
     Sampler sampler;
     const std::atomic<bool>& cancelled;
+    std::atomic<uint64_t>& rays;  ///< traced so far by all workers, for progress
 };
 
 /// One per worker: it owns that worker's memory, reserved when it is made.
@@ -51,6 +51,8 @@ public:
     virtual bool render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept = 0;
 };
 
+/// What one such integrator holds.
+uint64_t direct_integrator_bytes(uint32_t max_tile_pixels) noexcept;
 std::unique_ptr<Integrator> make_direct_integrator(const RenderContext& context, uint32_t max_tile_pixels);
 
 }  // namespace steradian

@@ -24,6 +24,11 @@ using Clock = std::chrono::steady_clock;
 
 Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.width, s.height}); }
 
+uint32_t largest_tile(const RenderSettings& s, const Execution& e) {
+    const Crop window = window_of(s);
+    return std::min(e.tile_size, window.x1 - window.x0) * std::min(e.tile_size, window.y1 - window.y0);
+}
+
 Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
 
 Status check_crop(const RenderSettings& s) {
@@ -35,16 +40,21 @@ Status check_crop(const RenderSettings& s) {
 }
 
 /// The sums, and the picture made of them twice: as it is handed over, and as a file's encoder holds it.
-Status check_memory(const RenderSettings& s) {
+/// And what the workers hold.
+Status check_memory(const RenderSettings& s, const Execution& e) {
     const Crop window = window_of(s);
-    const uint64_t pixels = uint64_t(window.x1 - window.x0) * (window.y1 - window.y0);
-    const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float));
+    const uint64_t width = window.x1 - window.x0, height = window.y1 - window.y0, pixels = width * height;
+    const uint64_t workers = e.threads ? e.threads : hardware_threads();
+    const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float)) +
+                            Film::tile_bytes() * (width / e.tile_size + 2) * (height / e.tile_size + 2) +
+                            workers * direct_integrator_bytes(largest_tile(s, e));
     const uint64_t available = available_memory();
     if (needed <= available) return Ok{};
     return make_error(
         ErrorCode::resources,
-        fmt::format("{} pixels need about {} MB of memory, {} MB are available", pixels, needed >> 20, available >> 20),
-        "render it in parts with --crop");
+        fmt::format("{} pixels on {} threads need about {} MB of memory, {} MB are available", pixels, workers,
+                    needed >> 20, available >> 20),
+        "render it in parts with --crop, or with fewer threads or smaller tiles");
 }
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
@@ -54,15 +64,18 @@ Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
                           fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width, s.height,
                                       kMaxResolution, kMaxPixels));
     if (auto status = check_crop(s); !status) return status;
-    if (auto status = check_memory(s); !status) return status;
     if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
         return settings_error(
             fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
-    if (!(s.filter.radius >= 0.01f && s.filter.radius <= 64))
-        return settings_error(fmt::format("a filter radius of {}: expected 0.01 to 64 pixels", s.filter.radius));
+    if (s.max_depth > kMaxDepth)
+        return settings_error(fmt::format("a depth of {}: expected at most {}", s.max_depth, kMaxDepth));
+    if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
+        return settings_error(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius,
+                                          kMinFilterRadius, kMaxFilterRadius));
     if (e.tile_size < 1 || e.tile_size > 256)
         return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
+    if (auto status = check_memory(s, e); !status) return status;
     if (s.camera >= cameras)
         return settings_error(cameras == 0 ? "the scene has no camera"
                                            : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
@@ -80,7 +93,7 @@ public:
           film_(window_, execution.tile_size),
           context_{
               *scene_,   settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
-              cancelled_},
+              cancelled_, rays_},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
 
     ~Job() override {
@@ -96,7 +109,7 @@ public:
         // Integrators take their memory here, where running out of it can still be reported by start().
         std::vector<std::unique_ptr<Integrator>> integrators;
         for (uint32_t i = 0; i < count; ++i)
-            integrators.push_back(make_direct_integrator(context_, execution_.tile_size * execution_.tile_size));
+            integrators.push_back(make_direct_integrator(context_, largest_tile(settings_, execution_)));
         running_ = count;
         workers_.reserve(count);
         for (uint32_t i = 0; i < count; ++i) {
@@ -128,11 +141,13 @@ public:
         return p;
     }
 
-    Image snapshot() const override {
+    Result<Image> snapshot() const override {
         const FloatMode mode;
-        Image image = film_.develop();
-        describe(image, film_.samples_per_pixel());
-        return image;
+        try {
+            return picture();
+        } catch (const std::bad_alloc&) {
+            return make_error(ErrorCode::resources, "not enough memory for the picture");
+        }
     }
 
     Result<RenderResult> take() override {
@@ -141,26 +156,27 @@ public:
             done_.wait(lock, [&] { return running_ == 0; });
             if (error_) return *error_;
         }
-        try {
-            RenderResult result;
-            result.image = snapshot();
-            const Film::Range samples = film_.samples_per_pixel();
-            result.min_samples = samples.min;
-            result.max_samples = samples.max;
-            result.complete = samples.min == settings_.samples_per_pixel;
-            result.statistics = statistics();
-            return result;
-        } catch (const std::bad_alloc&) {
-            return make_error(ErrorCode::resources, "not enough memory for the picture");
-        }
+        auto image = snapshot();
+        if (!image) return std::move(image).error();
+        const Film::Range samples = film_.samples_per_pixel();
+        RenderResult result;
+        result.image = std::move(*image);
+        result.min_samples = samples.min;
+        result.max_samples = samples.max;
+        result.complete = samples.min == settings_.samples_per_pixel;
+        result.statistics = statistics();
+        return result;
     }
 
 private:
     uint64_t pixels() const { return uint64_t(window_.x1 - window_.x0) * (window_.y1 - window_.y0); }
     uint64_t units_total() const { return blocks_ * film_.tiles(); }
 
-    void describe(Image& image, Film::Range samples) const {
+    Image picture() const {
+        Image image = film_.develop();
+        const Film::Range samples = film_.samples_per_pixel();
         image.metadata = picture_metadata(settings_, scene_->hash, samples.min, samples.max);
+        return image;
     }
 
     RenderStatistics statistics() const {
@@ -208,11 +224,9 @@ private:
         work.samples =
             static_cast<uint32_t>(std::min<uint64_t>(kBlockSamples, settings_.samples_per_pixel - work.first_sample));
         std::vector<RgbSum> sums(work.tile.pixels());
-        const uint64_t rays_before = counters.rays();
         if (!integrator.render(work, sums, counters)) return false;
         film_.commit(tile, block, work.samples, std::move(sums));
         samples_done_ += uint64_t(work.samples) * work.tile.pixels();
-        rays_ += counters.rays() - rays_before;
         return true;
     }
 
@@ -236,12 +250,13 @@ private:
     const Execution execution_;
     const Crop window_;
     std::atomic<bool> cancelled_{false};
+    std::atomic<uint64_t> rays_{0};
     Film film_;
     const RenderContext context_;
     const uint64_t blocks_;
     const Clock::time_point begin_ = Clock::now();
 
-    std::atomic<uint64_t> next_unit_{0}, samples_done_{0}, rays_{0};
+    std::atomic<uint64_t> next_unit_{0}, samples_done_{0};
     std::atomic<double> seconds_{0};
     std::atomic<bool> finished_{false};
 

@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "math/transform.h"
 #include "render/render_scene.h"
@@ -49,11 +50,25 @@ std::vector<Geometry> geometries_of(const Scene& scene, const AnalyticShapes& an
     return out;
 }
 
+/// The hierarchy takes about 60 bytes a primitive and, while it is built, as much again.
+Status check_memory(const Scene& scene) {
+    constexpr uint64_t kBytes = 120;
+    uint64_t primitives = scene.shapes.size() + scene.instances.size();
+    for (const Mesh& mesh : scene.meshes) primitives += mesh.indices.size() / 3;
+    const uint64_t needed = primitives * kBytes, available = available_memory();
+    if (needed <= available) return Ok{};
+    return make_error(ErrorCode::resources,
+                      fmt::format("the hierarchy over {} primitives needs about {} MB of memory, {} MB are available",
+                                  primitives, needed >> 20, available >> 20));
+}
+
 Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution,
                                                            Diagnostics& diagnostics) {
     std::string hash = scene_hash(scene);
     sanitize(scene, diagnostics);
     if (auto status = validate(scene); !status) return std::move(status).error();
+    if (scene.lights.empty()) diagnostics.warn("the scene has no lights: the picture will be black");
+    if (auto status = check_memory(scene); !status) return std::move(status).error();
     bake_transforms(scene);
     sanitize(scene, diagnostics);  // a transform may have moved vertices out of bounds
 

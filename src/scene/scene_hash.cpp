@@ -28,7 +28,7 @@ private:
     template <class... T>
     void put(const std::variant<T...>& v) {
         hash_.value(uint32_t(v.index()));
-        std::visit([this](const auto& alternative) { put(alternative); }, v);
+        std::visit([this](const auto& alternative) { this->put(alternative); }, v);
     }
     template <class T>
     requires std::is_arithmetic_v<T> || std::is_enum_v<T>

@@ -11,6 +11,8 @@
 namespace steradian {
 namespace {
 
+bool usable_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
 /// Thrown inside this file only; validate() converts it.
 struct Fault {
     std::string message;
@@ -44,7 +46,7 @@ private:
     }
     template <class... T>
     void check(const std::variant<T...>& v) {
-        std::visit([this](const auto& alternative) { check(alternative); }, v);
+        std::visit([this](const auto& alternative) { this->check(alternative); }, v);
     }
     void require(bool good, const char* what) const {
         if (!good) throw Fault{fmt::format("{}: {}", where_, what)};
@@ -105,10 +107,9 @@ private:
         const size_t count = m.positions.size();
         require(std::all_of(m.indices.begin(), m.indices.end(), [&](uint32_t i) { return i < count; }),
                 "an index refers to a vertex that does not exist");
-        require(std::all_of(m.positions.begin(), m.positions.end(), is_usable),
+        require(std::all_of(m.positions.begin(), m.positions.end(), usable_position),
                 "a vertex is not finite or beyond 1e15");
     }
-    static bool is_usable(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
     void check(MeshId id) const { refers(id, s_.meshes, "mesh"); }
     void check(const Sphere& s) const {
         point(s.center, "the centre must be finite and within 1e15");
@@ -186,8 +187,6 @@ private:
     const Scene& s_;
     std::string where_;
 };
-
-bool usable_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
 
 /// Removes triangles with an unusable vertex and moves unusable vertices to the origin, where nothing refers to them.
 uint64_t drop_triangles(Mesh& mesh) {

@@ -126,7 +126,9 @@ struct SobolGroup {
 };
 
 inline SobolGroup sobol_group(const SampleKey& key, uint32_t dimension) {
-    const uint64_t group = mix(key.pixel + (dimension / 4 + 1) * kGolden);
+    // The sequence has 2^32 points; what lies beyond begins another one.
+    const uint64_t pixel = key.pixel ^ (key.sample >> 32) * kGolden;
+    const uint64_t group = mix(pixel + (dimension / 4 + 1) * kGolden);
     return {group, scramble_index(reverse_bits(static_cast<uint32_t>(key.sample)), group)};
 }
 

@@ -17,7 +17,7 @@ namespace steradian {
 /// One sample of one pixel, hashed with the seed: what every number of that sample is derived from.
 struct SampleKey {
     uint64_t pixel = 0;   ///< hash of (seed, x, y)
-    uint64_t sample = 0;  ///< index of the sample, < 2^32
+    uint64_t sample = 0;  ///< index of the sample
 };
 
 class Sampler {

@@ -192,6 +192,15 @@ private:
 };
 
 /// Image textures only: the environment counts its own.
+/// Only images of floats can.
+bool adds_energy(const RawImage& image) {
+    if (image.format != TexelFormat::f16 && image.format != TexelFormat::f32) return false;
+    for (uint32_t y = 0; y < image.height; ++y)
+        for (uint32_t x = 0; x < image.width; ++x)
+            if (max_component(texel(image, ColorSpace::linear, x, y)) > 1) return true;
+    return false;
+}
+
 void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
     std::vector<bool> counted(scene.images.size(), false);
     for (const Texture& texture : scene.textures) {
@@ -200,6 +209,8 @@ void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
         counted[index(image->image)] = true;
         if (const uint64_t bad = count_bad_texels(scene.images[index(image->image)], false); bad > 0)
             diagnostics.warn("image texture: texels that are not finite count as 0", {}, bad);
+        if (adds_energy(scene.images[index(image->image)]))
+            diagnostics.warn("an image texture has values above 1: surfaces that add energy do not exist");
     }
 }
 

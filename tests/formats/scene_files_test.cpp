@@ -291,5 +291,27 @@ TEST_F(SceneFiles, MtlBecomesMaterials) {
     EXPECT_EQ(loaded->diagnostics.warnings().size(), 2u);
 }
 
+TEST_F(SceneFiles, AMissingTextureIsReportedWhereTheMaterialNamesIt) {
+    spit(folder_.path() / "bad.mtl", "newmtl a\nKd 1 1 1\nnewmtl b\n  map_Kd none.png\n");
+    spit(folder_.path() / "bad.obj", "mtllib bad.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl b\nf 1 2 3\n");
+    const auto loaded = load_scene(folder_.file("bad.obj"));
+    ASSERT_FALSE(loaded.ok());
+    EXPECT_EQ(loaded.error().where.file, folder_.file("bad.mtl"));
+    EXPECT_EQ(loaded.error().where.line, 4u);
+    EXPECT_EQ(loaded.error().where.column, 10u);
+    EXPECT_NE(loaded.error().message.find("none.png"), std::string::npos) << loaded.error().str();
+}
+
+TEST_F(SceneFiles, TheFilesThatWereReadAreListed) {
+    spit(folder_.path() / "map.mtl", "newmtl m\nmap_Kd image.png\n");
+    spit(folder_.path() / "map.obj", "mtllib map.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    spit(folder_.path() / "scene.json", scene_with_object(R"({"type": "mesh", "path": "map.obj"})"));
+    const auto loaded = load_scene(folder_.file("scene.json"));
+    ASSERT_TRUE(loaded.ok()) << loaded.error().str();
+    std::vector<std::string> expected;
+    for (const char* name : {"scene.json", "map.obj", "map.mtl", "image.png"}) expected.push_back(folder_.file(name));
+    EXPECT_EQ(loaded->files, expected);
+}
+
 }  // namespace
 }  // namespace steradian::test

@@ -121,8 +121,9 @@ TEST(Job, CancelKeepsWhatIsDone) {
     ASSERT_TRUE(job.ok());
     EXPECT_FALSE((*job)->wait_for(0.3));
     while ((*job)->progress().samples_done < uint64_t(settings.width) * settings.height * 64) std::this_thread::yield();
-    const Image snapshot = (*job)->snapshot();
-    EXPECT_GT(snapshot.pixels[0], 0);
+    const Result<Image> snapshot = (*job)->snapshot();
+    ASSERT_TRUE(snapshot.ok());
+    EXPECT_GT(snapshot->pixels[0], 0);
     (*job)->cancel();
     auto result = (*job)->take();
     ASSERT_TRUE(result.ok());
@@ -132,6 +133,21 @@ TEST(Job, CancelKeepsWhatIsDone) {
     EXPECT_LT(result->max_samples, settings.samples_per_pixel);
     EXPECT_TRUE(result->image.metadata.count("steradian:partial"));
     for (const float v : result->image.pixels) ASSERT_TRUE(std::isfinite(v));
+}
+
+TEST(Job, CancelDoesNotWaitForThousandsOfLightSamples) {
+    Scene scene = test::everything_scene();
+    std::get<AreaLight>(scene.lights[0]).samples = kMaxLightSamples;
+    RenderSettings settings = small_settings();
+    settings.width = settings.height = 512;
+    auto job = RenderJob::start(prepared(std::move(scene)), settings, {2, 256, BvhBuilder::sah, 64});
+    ASSERT_TRUE(job.ok());
+    while ((*job)->progress().rays < 100'000) std::this_thread::yield();  // far from the first unit's end
+    (*job)->cancel();
+    auto result = (*job)->take();
+    ASSERT_TRUE(result.ok());
+    EXPECT_EQ(result->max_samples, 0u);
+    EXPECT_LT((*job)->progress().rays, 30'000'000u);  // a unit has 256 × 256 × 64 × 4096
 }
 
 TEST(Job, DestroyingAJobStopsIt) {

@@ -120,6 +120,15 @@ TEST(Prepare, ManyLightsLoad) {
     EXPECT_TRUE(prepare(std::move(s), {}, diagnostics).ok());
 }
 
+TEST(Prepare, ASceneWithoutLightsIsWarnedAbout) {
+    Scene s = lit_plane();
+    s.lights.clear();
+    Diagnostics diagnostics;
+    ASSERT_TRUE(prepare(std::move(s), {}, diagnostics).ok());
+    ASSERT_EQ(diagnostics.warnings().size(), 1u);
+    EXPECT_NE(diagnostics.warnings()[0].message.find("no lights"), std::string::npos);
+}
+
 TEST(Prepare, WhatItDropsItReports) {
     Scene s = lit_plane();
     const auto mesh =

@@ -231,6 +231,7 @@ void LibraryReader::read_map(std::string_view keyword, Words& words) {
         throw ParseFailure{offset_of(file.data()), "the texture lies outside of the model's folder",
                            "move it there, or allow outside paths"};
     current_.diffuse_map = resolve_asset(file, folder_);
+    current_.diffuse_map_where.byte = offset_of(file.data());
 }
 
 void LibraryReader::read_value(std::string_view keyword, Words& words) {
@@ -277,6 +278,19 @@ void LibraryReader::read() {
     end_material();
 }
 
+/// Lines and columns for the byte offsets, in one walk: materials come in the order of the file.
+void locate_maps(std::string_view text, const std::string& name, std::vector<MeshMaterial>& materials) {
+    uint32_t line = 1;
+    size_t at = 0, begin = 0;
+    for (MeshMaterial& material : materials) {
+        if (!material.diffuse_map_where.byte) continue;
+        const size_t offset = *material.diffuse_map_where.byte;
+        for (; at < offset; ++at)
+            if (text[at] == '\n') ++line, begin = at + 1;
+        material.diffuse_map_where = {name, line, static_cast<uint32_t>(offset - begin + 1), {}};
+    }
+}
+
 }  // namespace
 
 Result<MaterialLibrary> parse_mtl(std::string_view text, const std::string& name, const std::string& folder,
@@ -289,6 +303,7 @@ Result<MaterialLibrary> parse_mtl(std::string_view text, const std::string& name
             library.diagnostics.warn(describe(note.kind, note.word), text_location(text, name, note.offset),
                                      note.count);
         library.materials = std::move(reader.materials);
+        locate_maps(text, name, library.materials);
         return library;
     } catch (const ParseFailure& failure) {
         return text_error(text, name, failure);

@@ -99,6 +99,7 @@ public:
     }
 
     std::vector<MeshMaterial> used;
+    std::vector<std::string> read;  ///< the libraries' paths
 
 private:
     static constexpr size_t kMaxNamed = 32;
@@ -136,6 +137,7 @@ private:
                               place(offset));
             return Ok{};
         }
+        read.push_back(path);
         auto library = parse_mtl(*data, path, folder_of(path), options_);
         if (!library) return std::move(library).error();
         diagnostics_.append(library->diagnostics);
@@ -178,6 +180,7 @@ MeshFile read_obj(std::string_view text, const std::string& name, const std::str
             {std::move(meshes[i]), material, std::string(list.has_material ? list.material : list.group)});
     }
     file.materials = std::move(materials.used);
+    file.libraries = std::move(materials.read);
     if (counts.not_finite)
         file.diagnostics.warn("faces with coordinates that are not finite were dropped", {name, 0, 0, {}},
                               counts.not_finite);

@@ -38,7 +38,7 @@ void read_resolution(ObjectReader& film, RenderSettings& settings) {
 }
 
 Filter read_filter(const Source& source, Value value) {
-    static constexpr Range kRadius{0.01, 32};
+    static constexpr Range kRadius{kMinFilterRadius, kMaxFilterRadius};
     ObjectReader reader(source, value, kFilterSpec, "the filter");
     const auto kind = static_cast<FilterKind>(
         json::read_choice(source, reader.require("type"), "the type of the filter", names_of<FilterKind>()));

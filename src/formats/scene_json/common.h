@@ -72,7 +72,6 @@ void check_camera(ObjectReader& camera, const PerspectiveCamera& result, std::st
 
 inline constexpr Range kFieldOfView{0, 180, true, true};
 inline constexpr Range kEta{1e-3, 1e3};
-inline constexpr uint64_t kMaxDepth = 65535;
 inline constexpr double kInverseSphere = 0.0795774715459476678844;  ///< 1 / 4π
 
 /// A list of steps, applied in the order of the list; an object with one or more steps, applied in the order in which
