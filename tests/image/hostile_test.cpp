@@ -10,11 +10,11 @@
 #include "image/samples.h"
 #include "support/support.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define STERADIAN_ASAN 1
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define STERADIAN_SANITIZED 1
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define STERADIAN_ASAN 1
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define STERADIAN_SANITIZED 1
 #endif
 #endif
 
@@ -122,7 +122,7 @@ void expect_cheap(const std::string& bytes, const std::string& name, bool may_de
     const test::Cost cost = test::cost_of(decode_in_child, &bytes);
     EXPECT_GE(cost.exit_code, 0) << name;
     EXPECT_TRUE(may_decode || cost.exit_code == 0) << name;
-#if !defined(STERADIAN_ASAN)
+#if !defined(STERADIAN_SANITIZED)
     EXPECT_LE(cost.peak_bytes, uint64_t(512) << 20) << name;
     EXPECT_LE(cost.seconds, 2.0) << name;
 #endif
