@@ -40,10 +40,10 @@ struct RenderSettings {
 };
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
-inline constexpr uint32_t kMaxDepth = 65535;                  ///< bounces
+inline constexpr uint32_t kMaxDepth = 65535;                             ///< bounces
 inline constexpr double kMinFilterRadius = 0.01, kMaxFilterRadius = 32;  ///< pixels
-inline constexpr uint32_t kMaxResolution = 1u << 20;       ///< of one side
-inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;  ///< width × height
+inline constexpr uint32_t kMaxResolution = 1u << 20;                     ///< of one side
+inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< width × height
 
 enum class BvhBuilder : uint8_t { sah, median };
 

@@ -50,11 +50,10 @@ Status check_memory(const RenderSettings& s, const Execution& e) {
                             workers * direct_integrator_bytes(largest_tile(s, e));
     const uint64_t available = available_memory();
     if (needed <= available) return Ok{};
-    return make_error(
-        ErrorCode::resources,
-        fmt::format("{} pixels on {} threads need about {} MB of memory, {} MB are available", pixels, workers,
-                    needed >> 20, available >> 20),
-        "render it in parts with --crop, or with fewer threads or smaller tiles");
+    return make_error(ErrorCode::resources,
+                      fmt::format("{} pixels on {} threads need about {} MB of memory, {} MB are available", pixels,
+                                  workers, needed >> 20, available >> 20),
+                      "render it in parts with --crop, or with fewer threads or smaller tiles");
 }
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
@@ -92,7 +91,7 @@ public:
           window_(window_of(settings)),
           film_(window_, execution.tile_size),
           context_{
-              *scene_,   settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
+              *scene_,    settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
               cancelled_, rays_},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
 
