@@ -26,8 +26,8 @@ struct LoadedScene {
     Scene scene;
     RenderSettings settings;
     Diagnostics diagnostics;
-    std::vector<std::string>
-        files;  ///< every file that was read, the scene itself first: outputs must not be among them
+    /// Every file that was read, the scene itself first: outputs must not be among them.
+    std::vector<std::string> files;
 };
 
 /// By extension: .json (Steradian's own format and the course vocabulary), .obj, .ply. A bare model gets a camera that
