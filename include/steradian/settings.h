@@ -47,12 +47,17 @@ inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< wi
 
 enum class BvhBuilder : uint8_t { sah, median };
 
+/// Which instructions the ray kernels use; all compute the same bits. `automatic` is the best that the machine has,
+/// unless the environment variable STERADIAN_ISA names another one.
+enum class Isa : uint8_t { automatic, scalar, sse4, avx2, avx512, neon };
+
 /// What may differ from run to run without changing the picture.
 struct Execution {
     uint32_t threads = 0;     ///< 0: as many as the machine has
     uint32_t tile_size = 16;  ///< pixels, 1 … 256
     BvhBuilder bvh = BvhBuilder::sah;
     uint32_t bvh_max_depth = 64;
+    Isa isa = Isa::automatic;
 };
 
 }  // namespace steradian

@@ -6,13 +6,35 @@
 
 #include "accel/geometry.h"
 #include "accel/instance.h"
-#include "accel/traverse.h"
+#include "accel/kernels/kernels.h"
 #include "base/parallel.h"
 
 namespace steradian {
 
+namespace {
+
+struct Built {
+    std::vector<BuiltGeometry> geometries;
+    std::vector<GeometryView> views;
+    std::vector<PlacedGeometry> instances;
+    Bvh bvh;  ///< over the instances that have anything in them
+
+    World world() const {
+        World w;
+        if (bvh.nodes.empty()) return w;
+        w.nodes = bvh.nodes.data(), w.order = bvh.order.data();
+        w.instances = instances.data(), w.geometries = views.data();
+        if (bvh.order.size() == 1 && instances[bvh.order[0]].identity) w.only = bvh.order[0];
+        return w;
+    }
+};
+
+}  // namespace
+
 struct Accel::Data {
+    Built built;
     World world;
+    const Kernels* kernels = nullptr;
     AccelStatistics statistics;
 };
 
@@ -29,7 +51,7 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
                      {},
                      {},
                      {}};
-    if (instances.size() >= 0x7fffffff)
+    if (instances.size() >= ChildRef::kMaxItems)
         return Error{ErrorCode::resources, std::to_string(instances.size()) + " instances are too many", {}, {}, {}};
     for (size_t i = 0; i < instances.size(); ++i)
         if (instances[i].geometry >= geometries.size())
@@ -43,19 +65,20 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
 }
 
 Status build_geometries(std::span<const Geometry> geometries, const AccelOptions& options, Cancellation& cancelled,
-                        World& world) {
+                        Built& world) {
     world.geometries.reserve(geometries.size());
     for (size_t i = 0; i < geometries.size(); ++i) {
-        Result<std::vector<Box>> boxes = primitive_bounds(geometries[i], i);
+        Result<std::vector<BuildPrimitive>> boxes = primitive_bounds(geometries[i], i);
         if (!boxes) return boxes.error();
         if (cancelled.poll()) return cancelled_error();
         world.geometries.push_back(build_geometry(geometries[i], *boxes, options, cancelled));
         if (cancelled.poll()) return cancelled_error();
     }
+    for (const BuiltGeometry& g : world.geometries) world.views.push_back(view_of(g));
     return Ok{};
 }
 
-Status place_instances(std::span<const GeometryInstance> instances, World& world) {
+Status place_instances(std::span<const GeometryInstance> instances, Built& world) {
     world.instances.reserve(instances.size());
     for (size_t i = 0; i < instances.size(); ++i) {
         const auto& [geometry, transform] = instances[i];
@@ -82,29 +105,26 @@ Status place_instances(std::span<const GeometryInstance> instances, World& world
 }
 
 /// The upper level, over the instances that have something in them.
-void build_top(const AccelOptions& options, Cancellation& cancelled, World& world) {
-    std::vector<Box> boxes;
-    std::vector<uint32_t> ids;
+void build_top(const AccelOptions& options, Cancellation& cancelled, Built& world) {
+    std::vector<BuildPrimitive> boxes;
     for (size_t i = 0; i < world.instances.size(); ++i) {
         if (world.instances[i].world.empty()) continue;
-        boxes.push_back(world.instances[i].world);
-        ids.push_back(static_cast<uint32_t>(i));
+        boxes.emplace_back(world.instances[i].world, static_cast<uint32_t>(i));
     }
     BvhOptions how;
     how.builder = options.builder;
     how.max_depth = options.max_depth;
     how.item_cost = 8;  // an instance is a transform and a hierarchy of its own: leaves with one are best
     world.bvh = build_bvh(boxes, how, cancelled);
-    for (uint32_t& i : world.bvh.order) i = ids[i];
 }
 
-template <class T>
-uint64_t bytes_of(const std::vector<T>& v) {
-    return v.capacity() * sizeof(T);
+template <class Array>
+uint64_t bytes_of(const Array& v) {
+    return v.capacity() * sizeof(v[0]);
 }
 uint64_t bytes_of(const Bvh& bvh) { return bytes_of(bvh.nodes) + bytes_of(bvh.order); }
 
-AccelStatistics count(const World& world) {
+AccelStatistics count(const Built& world) {
     AccelStatistics s;
     const auto add = [&](const Bvh& bvh) {
         s.nodes += bvh.nodes.size();
@@ -115,20 +135,11 @@ AccelStatistics count(const World& world) {
         s.primitives += g.count;
         s.depth = max_of(s.depth, g.bvh.depth);
         add(g.bvh);
-        if (const auto* blocks = std::get_if<std::vector<TriangleBlock>>(&g.primitives)) s.bytes += bytes_of(*blocks);
+        if (const auto* blocks = std::get_if<LargeArray<TriangleBlock>>(&g.primitives)) s.bytes += bytes_of(*blocks);
     }
     add(world.bvh);
     s.bytes += bytes_of(world.geometries) + bytes_of(world.instances);
     return s;
-}
-
-template <bool kAny, bool kAfter>
-Hit query(const World& world, const Ray& in, const Hit& after) {
-    Ray ray;
-    if (!canonical(in, ray)) return {};
-    Query<kAny, kAfter> q(ray.tmin, ray.tmax, after);
-    walk_world(world, ray, q);
-    return q.result();
 }
 
 }  // namespace
@@ -144,15 +155,19 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
     const auto started = std::chrono::steady_clock::now();
     try {
         if (Status status = check(geometries, instances, options); !status) return status.error();
+        const Result<const Kernels*> kernels = select_kernels(options.isa);
+        if (!kernels) return kernels.error();
         Cancellation cancelled(options.cancelled);
         auto data = std::make_unique<Data>();
-        if (Status status = build_geometries(geometries, options, cancelled, data->world); !status)
+        data->kernels = *kernels;
+        if (Status status = build_geometries(geometries, options, cancelled, data->built); !status)
             return status.error();
-        if (Status status = place_instances(instances, data->world); !status) return status.error();
-        build_top(options, cancelled, data->world);
+        if (Status status = place_instances(instances, data->built); !status) return status.error();
+        build_top(options, cancelled, data->built);
         if (cancelled.poll()) return cancelled_error();
-        data->statistics = count(data->world);
+        data->statistics = count(data->built);
         data->statistics.bytes += sizeof(Data);
+        data->world = data->built.world();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
         data->statistics.build_seconds = took.count();
         return Accel(std::move(data));
@@ -163,31 +178,32 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
 
 void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const noexcept {
     const FloatMode mode;
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = query<false, false>(data_->world, rays[i], {});
+    data_->kernels->intersect(data_->world, rays.data(), hits.data(), rays.size());
 }
 
 void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> result) const noexcept {
     const FloatMode mode;
-    for (size_t i = 0; i < rays.size(); ++i) result[i] = query<true, false>(data_->world, rays[i], {}).found() ? 1 : 0;
+    data_->kernels->occluded(data_->world, rays.data(), result.data(), rays.size());
 }
 
 void Accel::next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept {
     const FloatMode mode;
-    for (size_t i = 0; i < rays.size(); ++i)
-        hits[i] = after[i].found() ? query<false, true>(data_->world, rays[i], after[i]) : Hit{};
+    data_->kernels->next_hit(data_->world, rays.data(), after.data(), hits.data(), rays.size());
 }
 
 Hit Accel::intersect(const Ray& ray) const noexcept {
-    const FloatMode mode;
-    return query<false, false>(data_->world, ray, {});
+    Hit hit;
+    intersect({&ray, 1}, {&hit, 1});
+    return hit;
 }
 
 bool Accel::occluded(const Ray& ray) const noexcept {
-    const FloatMode mode;
-    return query<true, false>(data_->world, ray, {}).found();
+    uint8_t result = 0;
+    occluded({&ray, 1}, {&result, 1});
+    return result != 0;
 }
 
-Accel::Bounds Accel::bounds() const noexcept { return {data_->world.bvh.bounds.lo, data_->world.bvh.bounds.hi}; }
+Accel::Bounds Accel::bounds() const noexcept { return {data_->built.bvh.bounds.lo, data_->built.bvh.bounds.hi}; }
 
 const AccelStatistics& Accel::statistics() const noexcept { return data_->statistics; }
 

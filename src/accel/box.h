@@ -70,6 +70,7 @@ struct SlabRay {
     float inv_d[3];
     bool negative[3];
 
+    SlabRay() = default;
     /// `ray` must be usable, see canonical().
     explicit SlabRay(const Ray& ray) {
         for (int axis = 0; axis < 3; ++axis) {

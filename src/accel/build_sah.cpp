@@ -14,47 +14,57 @@ uint32_t bins_for(size_t count) { return static_cast<uint32_t>(count < 8 * (kBin
 /// Ranges are binned in chunks of this size, whatever the number of workers.
 constexpr size_t kChunk = 32768;
 
-struct Bin {
-    Box box;
-    uint32_t count = 0;
+struct Bins {
+    Box4 box[3][kBins];
+    uint32_t count[3][kBins] = {};
 
-    void extend(const Bin& other) {
-        box.extend(other.box);
-        count += other.count;
+    void extend(const Bins& other, uint32_t bins) {
+        for (size_t axis = 0; axis < 3; ++axis)
+            for (uint32_t bin = 0; bin < bins; ++bin) {
+                box[axis][bin].extend(other.box[axis][bin]);
+                count[axis][bin] += other.count[axis][bin];
+            }
     }
 };
-using Bins = std::array<std::array<Bin, kBins>, 3>;
 
 /// From a centroid to its bin, the same for counting and for dividing.
 class Binning {
 public:
-    Binning(const Box& centroids, size_t primitives) : count_(bins_for(primitives)) {
+    Binning(const RangeBounds& bounds, size_t primitives) : count_(bins_for(primitives)) {
+        const Box centroids = bounds.centroids.box();
+        alignas(16) float origin[4] = {}, scale[4] = {};
         for (int axis = 0; axis < 3; ++axis) {
-            origin_[axis] = centroids.lo[axis];
-            const float scale = float(count_) / (centroids.hi[axis] - centroids.lo[axis]);
+            origin[axis] = centroids.lo[axis];
+            const float s = float(count_) / (centroids.hi[axis] - centroids.lo[axis]);
             // 0 where the centroids coincide, or nearly so that the scale is infinite.
-            scale_[axis] = is_finite(scale) ? scale : 0.0f;
+            usable_[axis] = is_finite(s) && s > 0;
+            scale[axis] = usable_[axis] ? s : 0.0f;
         }
+        origin_ = Float4::load(origin), scale_ = Float4::load(scale), last_ = Float4::all(float(count_ - 1));
     }
     uint32_t count() const { return count_; }
-    bool usable(int axis) const { return scale_[axis] > 0; }
-    uint32_t bin(const BuildPrimitive& p, int axis) const {
-        const float x = (p.centroid(axis) - origin_[axis]) * scale_[axis];
-        return static_cast<uint32_t>(clamp_to(x, 0.0f, float(count_ - 1)));
+    bool usable(int axis) const { return usable_[axis]; }
+    /// The bins along the three axes, of a doubled centroid that lies within the bounds.
+    void bins(Float4 centroid, uint32_t out[4]) const {
+        smaller((centroid - origin_) * scale_, last_).store_integers(out);
     }
 
 private:
     uint32_t count_;
-    float origin_[3], scale_[3];
+    bool usable_[3];
+    Float4 origin_, scale_, last_;
 };
 
 void count(std::span<const BuildPrimitive> primitives, const Binning& binning, Bins& bins) {
-    for (const BuildPrimitive& p : primitives)
+    for (const BuildPrimitive& p : primitives) {
+        const Float4 lo = Float4::load(p.lo).first_three(), hi = Float4::load(p.hi).first_three();
+        alignas(16) uint32_t bin[4];
+        binning.bins(lo + hi, bin);
         for (int axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[static_cast<size_t>(axis)][binning.bin(p, axis)];
-            bin.box.extend(p.box);
-            ++bin.count;
+            bins.box[axis][bin[axis]].extend(lo, hi);
+            ++bins.count[axis][bin[axis]];
         }
+    }
 }
 
 void count_all(std::span<const BuildPrimitive> primitives, const Binning& binning, Bins& bins) {
@@ -63,10 +73,22 @@ void count_all(std::span<const BuildPrimitive> primitives, const Binning& binnin
     parallel_for(primitives.size(), kChunk, [&](size_t begin, size_t end) {
         count(primitives.subspan(begin, end - begin), binning, parts[begin / kChunk]);
     });
-    for (const Bins& part : parts)
-        for (size_t axis = 0; axis < 3; ++axis)
-            for (size_t bin = 0; bin < kBins; ++bin) bins[axis][bin].extend(part[axis][bin]);
+    for (const Bins& part : parts) bins.extend(part, kBins);
 }
+
+/// Half the surface of boxes, in units of the range's largest extent: neither over- nor underflows where it matters.
+class Area {
+public:
+    explicit Area(const RangeBounds& bounds) {
+        const Box box = bounds.box.box();
+        const float extent = max_component(box.hi - box.lo), scale = 1 / extent;
+        scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
+    }
+    float operator()(const Box4& box) const { return half_area((box.hi - box.lo) * scale_); }
+
+private:
+    Float4 scale_;
+};
 
 }  // namespace
 
@@ -88,39 +110,56 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {
 
 std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
                                        const LeafCost& leaf_cost) {
-    const Binning binning(bounds.centroids, primitives.size());
+    const Binning binning(bounds, primitives.size());
+    const Area half_area_of(bounds);
     Bins bins;
     count_all(primitives, binning, bins);
     std::optional<SahSplit> best;
+    const uint32_t all = static_cast<uint32_t>(primitives.size());
     for (int axis = 0; axis < 3; ++axis) {
         if (!binning.usable(axis)) continue;
-        const auto& row = bins[static_cast<size_t>(axis)];
-        std::array<double, kBins> right_cost{};
-        Bin side;
+        float right_cost[kBins];
+        Box4 side;
+        uint32_t in_side = 0;
         for (uint32_t i = binning.count() - 1; i > 0; --i) {
-            side.extend(row[i]);
-            right_cost[i] = side.box.half_area() * leaf_cost(side.count);
+            side.extend(bins.box[axis][i]);
+            in_side += bins.count[axis][i];
+            right_cost[i] = in_side ? half_area_of(side) * leaf_cost(in_side) : 0.0f;
         }
-        side = Bin{};
+        side = Box4{}, in_side = 0;
         for (uint32_t i = 1; i < binning.count(); ++i) {
-            side.extend(row[i - 1]);
-            if (side.count == 0 || side.count == primitives.size()) continue;
-            const double cost = side.box.half_area() * leaf_cost(side.count) + right_cost[i];
+            side.extend(bins.box[axis][i - 1]);
+            in_side += bins.count[axis][i - 1];
+            if (in_side == 0 || in_side == all) continue;
+            const float cost = half_area_of(side) * leaf_cost(in_side) + right_cost[i];
             if (!best || cost < best->cost) best = SahSplit{cost, axis, i};
         }
     }
     if (best) {
-        const double area = bounds.box.half_area();
+        const float area = half_area_of(bounds.box);
         best->cost = area > 0 ? best->cost / area : 0;
     }
     return best;
 }
 
-size_t apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split) {
-    const Binning binning(bounds.centroids, primitives.size());
-    const auto middle = std::partition(primitives.begin(), primitives.end(),
-                                       [&](const BuildPrimitive& p) { return binning.bin(p, split.axis) < split.bin; });
-    return static_cast<size_t>(middle - primitives.begin());
+Halves apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split) {
+    const Binning binning(bounds, primitives.size());
+    const auto on_left = [&](const BuildPrimitive& p) {
+        const Float4 lo = Float4::load(p.lo).first_three(), hi = Float4::load(p.hi).first_three();
+        alignas(16) uint32_t bin[4];
+        binning.bins(lo + hi, bin);
+        return bin[split.axis] < split.bin;
+    };
+    Halves halves;
+    size_t left = 0, right = primitives.size();
+    while (true) {
+        for (; left < right && on_left(primitives[left]); ++left) halves.bounds[0].extend(primitives[left]);
+        for (; left < right && !on_left(primitives[right - 1]); --right) halves.bounds[1].extend(primitives[right - 1]);
+        if (left >= right) break;
+        std::swap(primitives[left], primitives[right - 1]);
+    }
+    halves.left = left;
+    return halves;
 }
 
 }  // namespace steradian

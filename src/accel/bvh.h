@@ -1,4 +1,4 @@
-// The hierarchy itself: nodes with four children, and how one is built over boxes.
+// The hierarchy itself, and how one is built over boxes.
 #pragma once
 
 #include <atomic>
@@ -8,25 +8,21 @@
 #include <span>
 #include <vector>
 
-#include "accel/box.h"
+#include "accel/split.h"
+#include "base/large_array.h"
+#include "accel/wide_node.h"
 #include "steradian/settings.h"
 
 namespace steradian {
 
-/// Four children, their boxes side by side for the SIMD test: two cache lines.
-struct alignas(64) BvhNode {
-    float lo[3][4], hi[3][4];  ///< lo = +inf, hi = -inf where there is no child: never hit
-    uint32_t first[4];         ///< index of a node, or of the first item of a leaf
-    uint32_t count[4];         ///< 0 for a node, the number of items for a leaf
-};
-static_assert(sizeof(BvhNode) == 128);
-
 /// Levels of splits below the root, at most.
 inline constexpr uint32_t kMaxBvhDepth = 64;
+/// Levels of nodes, at most: one for every split, and what it takes to gather a leaf of any size from runs of items.
+inline constexpr uint32_t kMaxNodeLevels = kMaxBvhDepth + 10;
 
 /// The root is nodes[0]; no nodes when there was nothing to build over.
 struct Bvh {
-    std::vector<BvhNode> nodes;
+    LargeArray<WideNode> nodes;
     /// The primitives in the order of the leaves. A leaf's items are its entries here, or, when the leaves were padded
     /// to blocks, blocks of kBlock entries that end with kNoHit where the leaf does not fill them.
     std::vector<uint32_t> order;
@@ -59,14 +55,15 @@ private:
 struct BvhOptions {
     BvhBuilder builder = BvhBuilder::sah;
     uint32_t max_depth = kMaxBvhDepth;
-    bool blocks = false;   ///< pad leaves to blocks of kBlock, and count blocks instead of primitives in the nodes
-    double item_cost = 1;  ///< of testing one item, against one for visiting a node
+    bool blocks = false;  ///< pad leaves to blocks of kBlock, and count blocks instead of primitives in the nodes
+    float item_cost = 1;  ///< of testing one item, against one for visiting a node
 };
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the
 /// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. Uses all workers of the
 /// caller's arena; the result does not depend on their number. Check `cancelled.poll()` afterwards: what a cancelled
-/// build returns is unfinished. Throws std::bad_alloc. At most 2^31 - 1 boxes, all of them finite.
-Bvh build_bvh(std::span<const Box> boxes, const BvhOptions& options, Cancellation& cancelled);
+/// build returns is unfinished. Throws std::bad_alloc. Fewer than ChildRef::kMaxItems boxes, all of them finite;
+/// reorders them.
+Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled);
 
 }  // namespace steradian

@@ -7,13 +7,14 @@
 
 #include "accel/planar.h"
 #include "accel/sphere.h"
+#include "accel/triangle.h"
 #include "base/parallel.h"
 
 namespace steradian {
 namespace {
 
 constexpr size_t kGrain = 16384;
-constexpr size_t kMaxPrimitives = 0x7fffffff;
+constexpr size_t kMaxPrimitives = ChildRef::kMaxItems - 1;
 
 // A coordinate just below the bound may be rounded outwards over it.
 bool within_bounds(const Box& box) {
@@ -28,7 +29,7 @@ Error bad_geometry(size_t geometry, const std::string& what) {
 
 /// Fills boxes with box_of(i) and reports the first primitive for which that is nothing.
 template <class BoxOf>
-Result<std::vector<Box>> collect(size_t geometry, size_t count, const char* kind, BoxOf box_of) {
+Result<std::vector<BuildPrimitive>> collect(size_t geometry, size_t count, const char* kind, BoxOf box_of) {
     if (count > kMaxPrimitives)
         return Error{ErrorCode::resources,
                      "geometry " + std::to_string(geometry) + " has " + std::to_string(count) +
@@ -36,11 +37,15 @@ Result<std::vector<Box>> collect(size_t geometry, size_t count, const char* kind
                      {},
                      {},
                      {}};
-    std::vector<Box> boxes(count);
+    std::vector<BuildPrimitive> boxes(count);
     std::atomic<size_t> first_bad{count};
     parallel_for(count, kGrain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            if (box_of(i, boxes[i]) && within_bounds(boxes[i])) continue;
+            Box box;
+            if (box_of(i, box) && within_bounds(box)) {
+                boxes[i] = {box, static_cast<uint32_t>(i)};
+                continue;
+            }
             size_t seen = first_bad;
             while (i < seen && !first_bad.compare_exchange_weak(seen, i)) {
             }
@@ -58,7 +63,7 @@ Result<std::vector<Box>> collect(size_t geometry, size_t count, const char* kind
 // min_of and max_of may pass over a NaN, so a box alone does not show one.
 bool all_finite(Vec3 a, Vec3 b, Vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-Result<std::vector<Box>> bounds_of(const TriangleGeometry& mesh, size_t geometry) {
+Result<std::vector<BuildPrimitive>> bounds_of(const TriangleGeometry& mesh, size_t geometry) {
     if (mesh.indices.size() % 3 != 0)
         return bad_geometry(geometry, std::to_string(mesh.indices.size()) + " indices, expected a multiple of 3");
     for (size_t i = 0; i < mesh.indices.size(); ++i)
@@ -74,7 +79,7 @@ Result<std::vector<Box>> bounds_of(const TriangleGeometry& mesh, size_t geometry
     });
 }
 
-Result<std::vector<Box>> bounds_of(std::span<const SphereGeometry> spheres, size_t geometry) {
+Result<std::vector<BuildPrimitive>> bounds_of(std::span<const SphereGeometry> spheres, size_t geometry) {
     return collect(geometry, spheres.size(), "sphere", [&](size_t i, Box& box) {
         const SphereGeometry& s = spheres[i];
         if (!is_finite(s.center) || !(s.radius >= 0) || !is_finite(s.radius)) return false;
@@ -83,7 +88,7 @@ Result<std::vector<Box>> bounds_of(std::span<const SphereGeometry> spheres, size
     });
 }
 
-Result<std::vector<Box>> bounds_of(std::span<const RectangleGeometry> rectangles, size_t geometry) {
+Result<std::vector<BuildPrimitive>> bounds_of(std::span<const RectangleGeometry> rectangles, size_t geometry) {
     return collect(geometry, rectangles.size(), "rectangle", [&](size_t i, Box& box) {
         const RectangleGeometry& r = rectangles[i];
         if (!all_finite(r.center, r.half_u, r.half_v)) return false;
@@ -92,7 +97,7 @@ Result<std::vector<Box>> bounds_of(std::span<const RectangleGeometry> rectangles
     });
 }
 
-Result<std::vector<Box>> bounds_of(std::span<const DiskGeometry> disks, size_t geometry) {
+Result<std::vector<BuildPrimitive>> bounds_of(std::span<const DiskGeometry> disks, size_t geometry) {
     return collect(geometry, disks.size(), "disk", [&](size_t i, Box& box) {
         const DiskGeometry& d = disks[i];
         if (!all_finite(d.center, d.axis_u, d.axis_v)) return false;
@@ -101,8 +106,8 @@ Result<std::vector<Box>> bounds_of(std::span<const DiskGeometry> disks, size_t g
     });
 }
 
-std::vector<TriangleBlock> pack(const TriangleGeometry& mesh, std::span<const uint32_t> order) {
-    std::vector<TriangleBlock> blocks(order.size() / kBlock);
+LargeArray<TriangleBlock> pack(const TriangleGeometry& mesh, std::span<const uint32_t> order) {
+    LargeArray<TriangleBlock> blocks(order.size() / kBlock);
     parallel_for(blocks.size(), kGrain / kBlock, [&](size_t begin, size_t end) {
         for (size_t b = begin; b < end; ++b)
             for (size_t lane = 0; lane < kBlock; ++lane) {
@@ -120,20 +125,20 @@ std::vector<TriangleBlock> pack(const TriangleGeometry& mesh, std::span<const ui
 
 }  // namespace
 
-Result<std::vector<Box>> primitive_bounds(const Geometry& geometry, size_t geometry_index) {
+Result<std::vector<BuildPrimitive>> primitive_bounds(const Geometry& geometry, size_t geometry_index) {
     return std::visit([&](const auto& g) { return bounds_of(g, geometry_index); }, geometry);
 }
 
-BuiltGeometry build_geometry(const Geometry& geometry, std::span<const Box> boxes, const AccelOptions& options,
-                             Cancellation& cancelled) {
+BuiltGeometry build_geometry(const Geometry& geometry, std::span<BuildPrimitive> primitives,
+                             const AccelOptions& options, Cancellation& cancelled) {
     const auto* mesh = std::get_if<TriangleGeometry>(&geometry);
     BvhOptions how;
     how.builder = options.builder;
     how.max_depth = options.max_depth;
     how.blocks = mesh != nullptr;
     BuiltGeometry out;
-    out.count = boxes.size();
-    out.bvh = build_bvh(boxes, how, cancelled);
+    out.count = primitives.size();
+    out.bvh = build_bvh(primitives, how, cancelled);
     if (mesh) {
         out.primitives = pack(*mesh, out.bvh.order);
         out.bvh.order = {};
@@ -145,6 +150,24 @@ BuiltGeometry build_geometry(const Geometry& geometry, std::span<const Box> boxe
         },
         geometry);
     return out;
+}
+
+GeometryView view_of(const BuiltGeometry& geometry) {
+    GeometryView view;
+    if (geometry.bvh.nodes.empty()) return view;
+    view.nodes = geometry.bvh.nodes.data();
+    view.order = geometry.bvh.order.data();
+    struct Fill {
+        GeometryView& v;
+        void operator()(const LargeArray<TriangleBlock>& b) { v.kind = PrimitiveKind::triangles, v.blocks = b.data(); }
+        void operator()(std::span<const SphereGeometry> s) { v.kind = PrimitiveKind::spheres, v.spheres = s.data(); }
+        void operator()(std::span<const RectangleGeometry> r) {
+            v.kind = PrimitiveKind::rectangles, v.rectangles = r.data();
+        }
+        void operator()(std::span<const DiskGeometry> d) { v.kind = PrimitiveKind::disks, v.disks = d.data(); }
+    };
+    std::visit(Fill{view}, geometry.primitives);
+    return view;
 }
 
 }  // namespace steradian

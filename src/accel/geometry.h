@@ -7,7 +7,7 @@
 
 #include "accel/accel.h"
 #include "accel/bvh.h"
-#include "accel/triangle_block.h"
+#include "accel/world.h"
 
 namespace steradian {
 
@@ -15,17 +15,19 @@ struct BuiltGeometry {
     Bvh bvh;
     /// Triangles are packed in the order of the leaves (bvh.order is dropped then); the others are read through
     /// bvh.order.
-    std::variant<std::vector<TriangleBlock>, std::span<const SphereGeometry>, std::span<const RectangleGeometry>,
+    std::variant<LargeArray<TriangleBlock>, std::span<const SphereGeometry>, std::span<const RectangleGeometry>,
                  std::span<const DiskGeometry>>
         primitives;
     uint64_t count = 0;
 };
 
 /// The box of every primitive of a geometry, or what is wrong with it (bad_input, resources).
-Result<std::vector<Box>> primitive_bounds(const Geometry& geometry, size_t geometry_index);
+Result<std::vector<BuildPrimitive>> primitive_bounds(const Geometry& geometry, size_t geometry_index);
 
-/// `boxes` come from primitive_bounds. Unfinished when cancelled.
-BuiltGeometry build_geometry(const Geometry& geometry, std::span<const Box> boxes, const AccelOptions& options,
-                             Cancellation& cancelled);
+/// `primitives` come from primitive_bounds and are reordered. Unfinished when cancelled.
+BuiltGeometry build_geometry(const Geometry& geometry, std::span<BuildPrimitive> primitives,
+                             const AccelOptions& options, Cancellation& cancelled);
+
+GeometryView view_of(const BuiltGeometry& geometry);
 
 }  // namespace steradian

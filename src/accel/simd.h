@@ -19,7 +19,17 @@ struct Float4 {
     static Float4 load(const float* p) { return {_mm_load_ps(p)}; }
     static Float4 all(float x) { return {_mm_set1_ps(x)}; }
     void store(float* p) const { _mm_store_ps(p, v); }
+    /// Towards zero; values must fit.
+    void store_integers(uint32_t* p) const { _mm_store_si128(reinterpret_cast<__m128i*>(p), _mm_cvttps_epi32(v)); }
+    /// The fourth lane becomes 0.
+    Float4 first_three() const { return {_mm_and_ps(v, _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)))}; }
 };
+/// x y + y z + z x
+inline float half_area(Float4 e) {
+    const __m128 p = _mm_mul_ps(e.v, _mm_shuffle_ps(e.v, e.v, _MM_SHUFFLE(3, 0, 2, 1)));
+    const __m128 xy_yz = _mm_add_ss(p, _mm_shuffle_ps(p, p, 1));
+    return _mm_cvtss_f32(_mm_add_ss(xy_yz, _mm_movehl_ps(p, p)));
+}
 struct Mask4 {
     __m128 v;
 };
@@ -44,7 +54,13 @@ struct Float4 {
     static Float4 load(const float* p) { return {vld1q_f32(p)}; }
     static Float4 all(float x) { return {vdupq_n_f32(x)}; }
     void store(float* p) const { vst1q_f32(p, v); }
+    void store_integers(uint32_t* p) const { vst1q_u32(p, vcvtq_u32_f32(v)); }
+    Float4 first_three() const { return {vsetq_lane_f32(0.0f, v, 3)}; }
 };
+inline float half_area(Float4 e) {
+    const float x = vgetq_lane_f32(e.v, 0), y = vgetq_lane_f32(e.v, 1), z = vgetq_lane_f32(e.v, 2);
+    return x * y + y * z + z * x;
+}
 struct Mask4 {
     uint32x4_t v;
 };
@@ -72,7 +88,12 @@ struct Float4 {
     void store(float* p) const {
         for (int i = 0; i < 4; ++i) p[i] = v[i];
     }
+    void store_integers(uint32_t* p) const {
+        for (int i = 0; i < 4; ++i) p[i] = static_cast<uint32_t>(v[i]);
+    }
+    Float4 first_three() const { return {{v[0], v[1], v[2], 0}}; }
 };
+inline float half_area(Float4 e) { return e.v[0] * e.v[1] + e.v[1] * e.v[2] + e.v[2] * e.v[0]; }
 struct Mask4 {
     uint32_t v;
 };

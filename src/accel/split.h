@@ -6,25 +6,51 @@
 #include <span>
 
 #include "accel/box.h"
+#include "accel/simd.h"
 
 namespace steradian {
 
-/// What the builders move around: a box and whose it is.
-struct BuildPrimitive {
-    Box box;
-    uint32_t id = 0;
+/// What the builders move around: a box and whose it is. Two vectors of four floats, the id in the fourth of the first.
+struct alignas(16) BuildPrimitive {
+    float lo[3];
+    uint32_t id;
+    float hi[3];
+    uint32_t unused;
+
+    BuildPrimitive() = default;
+    BuildPrimitive(const Box& box, uint32_t id_)
+        : lo{box.lo.x, box.lo.y, box.lo.z}, id(id_), hi{box.hi.x, box.hi.y, box.hi.z}, unused(0) {}
 
     /// Twice the centroid, which orders and bins as well as the centroid does.
-    float centroid(int axis) const { return box.lo[axis] + box.hi[axis]; }
+    float centroid(int axis) const { return lo[axis] + hi[axis]; }
+};
+static_assert(sizeof(BuildPrimitive) == 32);
+
+/// A box in two vectors; their fourth lanes mean nothing.
+struct Box4 {
+    Float4 lo = Float4::all(kInfinity), hi = Float4::all(-kInfinity);
+
+    void extend(Float4 l, Float4 h) {
+        lo = smaller(l, lo);
+        hi = larger(h, hi);
+    }
+    void extend(const Box4& b) { extend(b.lo, b.hi); }
+    Box box() const {
+        alignas(16) float l[4], h[4];
+        lo.store(l), hi.store(h);
+        return {{l[0], l[1], l[2]}, {h[0], h[1], h[2]}};
+    }
 };
 
 /// Bounds of a range: of the boxes, and of their (doubled) centroids.
 struct RangeBounds {
-    Box box, centroids;
+    Box4 box, centroids;
 
     void extend(const BuildPrimitive& p) {
-        box.extend(p.box);
-        centroids.extend(Vec3{p.centroid(0), p.centroid(1), p.centroid(2)});
+        const Float4 lo = Float4::load(p.lo).first_three(), hi = Float4::load(p.hi).first_three();
+        box.extend(lo, hi);
+        const Float4 centroid = lo + hi;
+        centroids.extend(centroid, centroid);
     }
     void extend(const RangeBounds& other) {
         box.extend(other.box);
@@ -35,26 +61,30 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives);
 
 /// What a leaf with `count` primitives costs, in visits of a node.
 struct LeafCost {
-    double item_cost = 1;
+    float item_cost = 1;
     bool blocks = false;
 
-    double operator()(size_t count) const { return item_cost * double(blocks ? (count + 3) / 4 : count); }
+    float operator()(size_t count) const { return item_cost * static_cast<float>(blocks ? (count + 3) / 4 : count); }
 };
 
-/// Reorders the range around the median of (centroid, id) along the widest axis of the centroids; returns how many are
-/// on the left, half of them.
-size_t split_median(std::span<BuildPrimitive> primitives, const RangeBounds& bounds);
+/// What a split made of a range: how many are on the left, neither none nor all, and the bounds of both sides.
+struct Halves {
+    size_t left = 0;
+    RangeBounds bounds[2];
+};
+
+/// Reorders the range around the median of (centroid, id) along the widest axis of the centroids: half are on the left.
+Halves split_median(std::span<BuildPrimitive> primitives, const RangeBounds& bounds);
 
 /// The binned surface-area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
 struct SahSplit {
-    double cost = 0;  ///< of both sides, weighed by the chance to meet them; without the visit of the node itself
+    float cost = 0;  ///< of both sides, weighed by the chance to meet them; without the visit of the node itself
     int axis = 0;
     uint32_t bin = 0;  ///< the first one on the right
 };
 /// Nothing when all centroids coincide.
 std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
                                        const LeafCost& leaf_cost);
-/// Reorders the range; returns how many are on the left, neither none nor all.
-size_t apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split);
+Halves apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split);
 
 }  // namespace steradian

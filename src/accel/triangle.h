@@ -32,6 +32,7 @@ struct TriangleRay {
     double d_z;
     int axis[3];
 
+    TriangleRay() = default;
     /// `ray` must be canonical.
     explicit TriangleRay(const Ray& ray) {
         const Vec3 size = abs(ray.d);
@@ -45,8 +46,8 @@ struct TriangleRay {
 };
 
 struct TriangleCandidate {
-    float t;     ///< rounded once; may be infinite
-    float u, v;  ///< >= 0, and u + v <= 1 exactly
+    float t = 0;         ///< rounded once; may be infinite
+    float u = 0, v = 0;  ///< >= 0, and u + v <= 1 exactly
 };
 
 namespace detail {
@@ -80,25 +81,46 @@ struct Sheared {
 
 }  // namespace detail
 
+/// The edge functions of a triangle, which are the weights of its vertices, and how far its vertices are along z.
+struct EdgeFunctions {
+    double u, v, w;
+    double z[3];
+
+    /// False when the triangle is missed: when two weights have opposite signs, or all of them vanish.
+    bool inside() const {
+        return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0;
+    }
+    /// The candidate of a triangle that is not missed.
+    TriangleCandidate candidate(double d_z) const {
+        const double sum = u + v + w;
+        TriangleCandidate out;
+        out.t = static_cast<float>((u * z[0] + v * z[1] + w * z[2]) / (sum * d_z));
+        out.u = static_cast<float>(v / sum);
+        out.v = static_cast<float>(w / sum);
+        // Both may have been rounded up; one float less of the larger one is enough.
+        if (double(out.u) + double(out.v) > 1) {
+            float& larger = out.u > out.v ? out.u : out.v;
+            larger = std::nextafter(larger, 0.0f);
+        }
+        return out;
+    }
+};
+
+inline EdgeFunctions edge_functions(const TriangleRay& ray, Vec3 p0, Vec3 p1, Vec3 p2) {
+    const detail::Sheared a(ray, p0), b(ray, p1), c(ray, p2);
+    // Each from the edge that faces the vertex.
+    return {detail::difference_of_products(c.x, b.y, c.y, b.x),
+            detail::difference_of_products(a.x, c.y, a.y, c.x),
+            detail::difference_of_products(b.x, a.y, b.y, a.x),
+            {a.z, b.z, c.z}};
+}
+
 /// True when the line through the ray meets the triangle, edges and vertices included, from either side. Never for a
 /// triangle without area or seen exactly edge-on. t is not limited; settle() does that.
 inline bool intersect_triangle(const TriangleRay& ray, Vec3 p0, Vec3 p1, Vec3 p2, TriangleCandidate& out) {
-    const detail::Sheared a(ray, p0), b(ray, p1), c(ray, p2);
-    // The weights of p0, p1, p2, each from the edge that faces it.
-    const double u = detail::difference_of_products(c.x, b.y, c.y, b.x);
-    const double v = detail::difference_of_products(a.x, c.y, a.y, c.x);
-    const double w = detail::difference_of_products(b.x, a.y, b.y, a.x);
-    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-    const double sum = u + v + w;
-    if (sum == 0) return false;
-    out.t = static_cast<float>((u * a.z + v * b.z + w * c.z) / (sum * ray.d_z));
-    out.u = static_cast<float>(v / sum);
-    out.v = static_cast<float>(w / sum);
-    // Both may have been rounded up; one float less of the larger one is enough.
-    if (double(out.u) + double(out.v) > 1) {
-        float& larger = out.u > out.v ? out.u : out.v;
-        larger = std::nextafter(larger, 0.0f);
-    }
+    const EdgeFunctions edges = edge_functions(ray, p0, p1, p2);
+    if (!edges.inside()) return false;
+    out = edges.candidate(ray.d_z);
     return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "accel/kernels/kernels.h"
 #include "scenes.h"
 #include "support/support.h"
 
@@ -12,24 +13,36 @@ namespace {
 struct Variant {
     BvhBuilder builder;
     uint32_t max_depth;
+    Isa isa;
 };
-constexpr Variant kVariants[] = {{BvhBuilder::sah, 64},
-                                 {BvhBuilder::median, 64},
-                                 {BvhBuilder::sah, 5},
-                                 {BvhBuilder::median, 3},
-                                 {BvhBuilder::sah, 1}};
+
+/// Every kernel that the machine has on the default hierarchy, and other hierarchies with the kernels in turn.
+std::vector<Variant> variants() {
+    std::vector<Variant> all;
+    const std::vector<Isa> isas = supported_isas();
+    for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa});
+    size_t turn = 0;
+    for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::median, 64u},
+                                             {BvhBuilder::sah, 5u},
+                                             {BvhBuilder::median, 3u},
+                                             {BvhBuilder::sah, 1u}})
+        all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
+    return all;
+}
 
 std::string name_of(const Variant& v) {
-    return std::string(v.builder == BvhBuilder::sah ? "sah" : "median") + ", max depth " + std::to_string(v.max_depth);
+    return std::string(v.builder == BvhBuilder::sah ? "sah" : "median") + ", max depth " + std::to_string(v.max_depth) +
+           ", instruction set " + std::to_string(int(v.isa));
 }
 
 std::vector<Accel> build_all(const TestScene& scene) {
     std::vector<Accel> built;
     const std::vector<Geometry> geometries = scene.geometries();
-    for (const Variant& v : kVariants) {
+    for (const Variant& v : variants()) {
         AccelOptions options;
         options.builder = v.builder;
         options.max_depth = v.max_depth;
+        options.isa = v.isa;
         Result<Accel> accel = Accel::build(geometries, scene.instances, options);
         if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
         EXPECT_LE(accel->statistics().depth, v.max_depth) << scene.name << ": " << name_of(v);
@@ -79,7 +92,7 @@ TEST(Oracle, EveryBitOfEveryHit) {
             std::vector<Hit> expected(rays.size());
             for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
             cut_at_hits(rays, expected, brute);
-            for (size_t v = 0; v < built.size(); ++v) compare(scenes[s], kVariants[v], built[v], rays, expected);
+            for (size_t v = 0; v < built.size(); ++v) compare(scenes[s], variants()[v], built[v], rays, expected);
             for (const Hit& h : expected) hit += h.found();
             shot += rays.size();
         }
@@ -98,12 +111,12 @@ TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {
         const std::vector<Ray> rays = hard_rays(scenes[s], each, 77 + s);
         for (const Ray& ray : rays) {
             const std::vector<Hit> expected = brute.all_hits(ray);
-            for (size_t v = 0; v < 3; ++v) {
+            for (size_t v = 0; v < built.size(); ++v) {
                 Hit hit = built[v].intersect(ray);
                 for (size_t k = 0; k <= expected.size(); ++k) {
                     const Hit& wanted = k < expected.size() ? expected[k] : Hit{};
                     ASSERT_TRUE(same_bits(hit, wanted))
-                        << scenes[s].name << ", " << name_of(kVariants[v]) << ", hit " << k << " of " << expected.size()
+                        << scenes[s].name << ", " << name_of(variants()[v]) << ", hit " << k << " of " << expected.size()
                         << "\nray      " << describe(ray) << "\nexpected " << describe(wanted) << "\ngot      "
                         << describe(hit);
                     const Hit after = hit;

@@ -1,0 +1,390 @@
+// The kernels: many rays at once through the two levels of hierarchies. Included once for each instruction set, inside a
+// namespace of its own and after its vectors (simd_*.inl).
+//
+// What bounds traversal is waiting: for nodes to come from memory, and for the outcome of one test before the next one
+// can start. So several rays are on their way at a time, each a small state machine (Flight); whenever one of them needs
+// a node or a leaf, its memory is requested and the others go on.
+
+enum class Mode { closest, any, after };
+
+/// Siblings left behind on the way down, in both levels, and what marks the way back up.
+inline constexpr uint32_t kStackSize = 2 * (kWidth - 1) * kMaxNodeLevels + 2 * kWidth;
+/// Not references of children: the end of an instance, and the end of everything.
+inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu;
+
+/// A ray on its way.
+struct alignas(64) Flight {
+    // What the slab test needs, in the current space.
+    float o[3], inv_d[3];
+    uint64_t near_plane[3], far_plane[3];  ///< where in a node the planes are that come first and last, in bytes
+    uint32_t octant_shift;
+    float start, limit;  ///< boxes outside of it cannot hold what is sought
+    uint32_t next;       ///< the child to look at next
+    uint32_t depth;      ///< of the stack
+    const WideNode* nodes;
+
+    uintptr_t leaves;              ///< address of the first block or entry of the current level
+    uintptr_t leaf_stride;         ///< bytes
+    const GeometryView* geometry;  ///< nullptr on the upper level
+    TriangleRay triangle_ray;
+    Hit best, after;
+    float tmin;
+    uint32_t instance;
+    Interval world;  ///< of the instance along the world's ray; the whole line where it is not transformed
+    uint32_t index;  ///< of the ray in its batch
+    Ray ray, world_ray;
+
+    float t_in[kStackSize];
+    uint32_t ref[kStackSize];
+
+    SlabRay slab() const {
+        SlabRay s;
+        for (int axis = 0; axis < 3; ++axis)
+            s.o[axis] = o[axis], s.inv_d[axis] = inv_d[axis], s.negative[axis] = std::signbit(inv_d[axis]);
+        return s;
+    }
+    void push(uint32_t what) {
+        t_in[depth] = -kInfinity;
+        ref[depth++] = what;
+    }
+};
+
+inline void set_space(Flight& f, const Ray& ray) {
+    f.ray = ray;
+    const SlabRay slab(ray);
+    f.octant_shift = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        f.o[axis] = slab.o[axis], f.inv_d[axis] = slab.inv_d[axis];
+        f.near_plane[axis] = static_cast<uint32_t>(2 * axis + slab.negative[axis]) * sizeof(float[kWidth]);
+        f.far_plane[axis] = f.near_plane[axis] ^ sizeof(float[kWidth]);
+        f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
+    }
+    f.triangle_ray = TriangleRay(ray);
+}
+
+/// Inside a transformed instance t is clamped once more, and an end of the range that this can reach does not bound the
+/// t before it.
+template <Mode kMode>
+inline void set_range(Flight& f) {
+    const float start = kMode == Mode::after && f.after.t > f.tmin ? f.after.t : f.tmin;
+    f.start = f.world.in < start ? start : -kInfinity;
+    f.limit = f.best.t < f.world.out ? f.best.t : kInfinity;
+}
+
+/// True when the query is done.
+template <Mode kMode>
+inline bool offer(Flight& f, const Hit& candidate, Interval own) {
+    Hit hit = candidate;
+    if (!settle(candidate.t, own, f.world, hit.t) || !(hit.t >= f.tmin)) return false;
+    hit.instance = f.instance;
+    if (!comes_before(hit, f.best)) return false;
+    if (kMode == Mode::after && !comes_before(f.after, hit)) return false;
+    f.best = hit;
+    f.limit = hit.t < f.world.out ? hit.t : kInfinity;
+    return kMode == Mode::any;
+}
+
+/// What lies on top of the stack and can still hold what is sought. At the bottom lies kFinished.
+template <Mode kMode>
+inline uint32_t pop(Flight& f) {
+    do --f.depth;
+    while (kMode != Mode::any && f.t_in[f.depth] > f.limit);
+    return f.ref[f.depth];
+}
+
+/// slab_interval() for the children of a node, cut to [start, limit]. Pushes those that are met and goes on with the
+/// nearest.
+template <Mode kMode>
+inline void visit_node(Flight& f) {
+    const WideNode& node = f.nodes[f.next];
+    const char* planes = reinterpret_cast<const char*>(&node);
+    const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
+    Float8 in = Float8::all(f.start), out = Float8::all(kInfinity);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Float8 o = Float8::all(f.o[axis]), inv_d = Float8::all(f.inv_d[axis]);
+        in = larger((plane(f.near_plane[axis]) - o) * inv_d, in);
+        out = smaller((plane(f.far_plane[axis]) - o) * inv_d, out);
+    }
+    out = out * Float8::all(kFarScale) + Float8::all(kFarPad);
+    if (kMode == Mode::any) {
+        // One hit is as good as another: neither order nor distances matter, and the limit never falls.
+        f.depth += push_met(at_most(in, out) & at_most(in, Float8::all(f.limit)), node, &f.ref[f.depth]);
+    } else {
+        f.depth += push_met(in, out, f.limit, node, f.octant_shift, &f.t_in[f.depth], &f.ref[f.depth]);
+    }
+    f.next = pop<kMode>(f);
+}
+
+template <Mode kMode>
+inline bool test_block(Flight& f, const TriangleBlock& block) {
+    const TriangleRay& ray = f.triangle_ray;
+    const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
+    const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
+    Double4 x[3], y[3], z[3];
+    for (int i = 0; i < 3; ++i) {
+        z[i] = Double4::of_floats(block.vertex[i][ray.axis[2]]) - o[2];
+        x[i] = (Double4::of_floats(block.vertex[i][ray.axis[0]]) - o[0]) - shear_x * z[i];
+        y[i] = (Double4::of_floats(block.vertex[i][ray.axis[1]]) - o[1]) - shear_y * z[i];
+    }
+    const Double4 u = x[2] * y[1] - y[2] * x[1];
+    const Double4 v = x[0] * y[2] - y[0] * x[2];
+    const Double4 w = x[1] * y[0] - y[1] * x[0];
+    uint32_t maybe = not_negative(smaller(smaller(u, v), w)) | not_positive(larger(larger(u, v), w));
+    if (maybe == 0) [[likely]]
+        return false;
+    alignas(32) double us[4], vs[4], ws[4], zs[3][4];
+    u.store(us), v.store(vs), w.store(ws);
+    for (int i = 0; i < 3; ++i) z[i].store(zs[i]);
+    for (; maybe; maybe &= maybe - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(maybe));
+        if (block.prim[lane] == kNoHit) break;
+        const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
+        EdgeFunctions edges{us[lane], vs[lane], ws[lane], {zs[0][lane], zs[1][lane], zs[2][lane]}};
+        // The sign of a difference that came out as 0 is still open.
+        if (edges.u == 0 || edges.v == 0 || edges.w == 0) edges = edge_functions(ray, p0, p1, p2);
+        if (!edges.inside()) continue;
+        const TriangleCandidate c = edges.candidate(ray.d_z);
+        const Interval own = slab_interval(triangle_bounds(p0, p1, p2), f.slab());
+        if (offer<kMode>(f, {c.t, c.u, c.v, block.prim[lane], 0}, own)) return true;
+    }
+    return false;
+}
+
+template <Mode kMode>
+bool test_sphere(Flight& f, const SphereGeometry& sphere, uint32_t prim) {
+    const SphereCandidates c = intersect_sphere(f.ray, sphere);
+    for (int i = 0; i < c.count; ++i)
+        if (offer<kMode>(f, {c.t[i], 0, 0, prim, 0}, slab_interval(sphere_bounds(sphere), f.slab()))) return true;
+    return false;
+}
+template <Mode kMode>
+bool test_rectangle(Flight& f, const RectangleGeometry& rectangle, uint32_t prim) {
+    PlanarCandidate c;
+    return intersect_rectangle(f.ray, rectangle, c) &&
+           offer<kMode>(f, {c.t, c.a, c.b, prim, 0}, slab_interval(rectangle_bounds(rectangle), f.slab()));
+}
+template <Mode kMode>
+bool test_disk(Flight& f, const DiskGeometry& disk, uint32_t prim) {
+    PlanarCandidate c;
+    return intersect_disk(f.ray, disk, c) &&
+           offer<kMode>(f, {c.t, c.a, c.b, prim, 0}, slab_interval(disk_bounds(disk), f.slab()));
+}
+
+/// One primitive that is not a triangle.
+template <Mode kMode>
+bool test_other(Flight& f, uint32_t prim) {
+    const GeometryView& g = *f.geometry;
+    switch (g.kind) {
+        case PrimitiveKind::spheres: return test_sphere<kMode>(f, g.spheres[prim], prim);
+        case PrimitiveKind::rectangles: return test_rectangle<kMode>(f, g.rectangles[prim], prim);
+        case PrimitiveKind::disks: return test_disk<kMode>(f, g.disks[prim], prim);
+        case PrimitiveKind::triangles: break;
+    }
+    return false;
+}
+
+/// True when the query is done.
+template <Mode kMode>
+inline bool visit_primitives(Flight& f) {
+    const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
+    const GeometryView& g = *f.geometry;
+    if (g.kind == PrimitiveKind::triangles) [[likely]] {
+        for (uint32_t b = first; b < first + count; ++b)
+            if (test_block<kMode>(f, g.blocks[b])) return true;
+        return false;
+    }
+    for (uint32_t i = first; i < first + count; ++i)
+        if (test_other<kMode>(f, g.order[i])) return true;
+    return false;
+}
+
+template <Mode kMode>
+inline void to_upper_level(Flight& f, const World& world) {
+    f.geometry = nullptr;
+    f.nodes = world.nodes;
+    f.leaves = reinterpret_cast<uintptr_t>(world.order);
+    f.leaf_stride = sizeof(uint32_t);
+    set_range<kMode>(f);
+}
+
+/// Into the hierarchy of an instance. False when the ray cannot hit anything there.
+template <Mode kMode>
+bool enter(Flight& f, const World& world, uint32_t instance) {
+    const PlacedGeometry& placed = world.instances[instance];
+    f.world = {};
+    if (!placed.identity) {
+        Ray object_ray;
+        f.world = slab_interval(placed.world, SlabRay(f.world_ray));
+        if (f.world.empty() || !placed.to_object(f.world_ray, object_ray)) {
+            f.world = {};
+            return false;
+        }
+        set_space(f, object_ray);
+    }
+    f.instance = instance;
+    f.geometry = &world.geometries[placed.geometry];
+    f.nodes = f.geometry->nodes;
+    const bool triangles = f.geometry->kind == PrimitiveKind::triangles;
+    f.leaves = triangles ? reinterpret_cast<uintptr_t>(f.geometry->blocks)
+                         : reinterpret_cast<uintptr_t>(f.geometry->order);
+    f.leaf_stride = triangles ? sizeof(TriangleBlock) : sizeof(uint32_t);
+    set_range<kMode>(f);
+    f.next = ChildRef::node(0);
+    return true;
+}
+
+template <Mode kMode>
+void leave(Flight& f, const World& world) {
+    if (!world.instances[f.instance].identity) set_space(f, f.world_ray);
+    f.world = {};
+    to_upper_level<kMode>(f, world);
+    f.next = pop<kMode>(f);
+}
+
+/// The first of a run of instances; the rest is pushed, and so is the way back.
+template <Mode kMode>
+void visit_instances(Flight& f, const World& world) {
+    const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
+    if (count > 1) f.push(ChildRef::leaf(first + 1, count - 1));
+    if (enter<kMode>(f, world, world.order[first])) {
+        f.push(kLeaveInstance);
+    } else {
+        f.next = pop<kMode>(f);
+    }
+}
+
+/// Whatever is not a node. Leaves f.next behind.
+template <Mode kMode>
+inline void visit_other(Flight& f, const World& world) {
+    if (f.next == kLeaveInstance) return leave<kMode>(f, world);
+    if (f.geometry == nullptr) return visit_instances<kMode>(f, world);
+    f.next = visit_primitives<kMode>(f) ? kFinished : pop<kMode>(f);
+}
+
+/// False when the ray hits nothing by definition.
+template <Mode kMode>
+inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* after, uint32_t index) {
+    if (world.nodes == nullptr || !canonical(in, f.world_ray)) return false;
+    if (kMode == Mode::after) {
+        if (!after->found()) return false;
+        f.after = *after;
+    }
+    f.index = index;
+    f.tmin = f.world_ray.tmin;
+    // Ids that every candidate comes before: one at tmax itself is still a hit.
+    f.best = Hit{};
+    f.best.t = f.world_ray.tmax;
+    f.depth = 0;
+    f.push(kFinished);
+    f.world = {};
+    set_space(f, f.world_ray);
+    if (world.only != kNoHit) return enter<kMode>(f, world, world.only);
+    to_upper_level<kMode>(f, world);
+    f.next = ChildRef::node(0);
+    return true;
+}
+
+/// Asks for the memory of what comes next. Without a branch, as nobody can guess whether that is a node or a leaf; what
+/// is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes calls of functions that do nothing but
+/// prefetch, so this one must be inlined before it notices.)
+__attribute__((always_inline)) inline void prefetch(const Flight& f) {
+    const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
+    const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), somewhere = all_if(f.next < kFinished);
+    const uintptr_t node = reinterpret_cast<uintptr_t>(f.nodes) + uintptr_t(f.next) * sizeof(WideNode);
+    const uintptr_t item = f.leaves + (ChildRef::first(f.next) & somewhere) * f.leaf_stride;
+    const char* place = reinterpret_cast<const char*>((item & leaf) | (node & ~leaf));
+    __builtin_prefetch(place);
+    __builtin_prefetch(place + 64);
+    __builtin_prefetch(place + 128);
+    __builtin_prefetch(place + 192);
+}
+
+/// sink(index, hit) for every ray, in any order.
+///
+/// Rays that are at a node and rays that are at a leaf wait in two queues, because which of the two comes next for a ray
+/// is the one thing that a processor cannot guess.
+template <Mode kMode, class Sink>
+inline void trace(const World& world, const Ray* rays, const Hit* after, size_t count, Sink sink) {
+    constexpr uint32_t kInFlight = 32, kLeavesAtOnce = 24;
+    Flight flights[kInFlight];
+    Flight* at_node[kInFlight + 1];
+    Flight* elsewhere[kInFlight + 1];
+    uint32_t nodes = 0, others = 0;
+    const auto queue = [&](Flight& f) {
+        prefetch(f);
+        const bool node = !ChildRef::is_leaf(f.next);
+        at_node[nodes] = elsewhere[others] = &f;
+        nodes += node, others += !node;
+    };
+    size_t next = 0;
+    const auto start = [&](Flight& f) {
+        while (next < count) {
+            const size_t i = next++;
+            if (launch<kMode>(f, world, rays[i], after ? after + i : nullptr, static_cast<uint32_t>(i))) {
+                queue(f);
+                return;
+            }
+            sink(i, Hit{});
+        }
+    };
+    for (Flight& f : flights) start(f);
+    while (nodes + others) {
+        while (nodes && others < kLeavesAtOnce) {
+            const uint32_t waiting = nodes;
+            nodes = 0;
+            for (uint32_t i = 0; i < waiting; ++i) {
+                Flight& f = *at_node[i];
+                visit_node<kMode>(f);
+                queue(f);
+            }
+        }
+        const uint32_t waiting = others;
+        others = 0;
+        for (uint32_t i = 0; i < waiting; ++i) {
+            Flight& f = *elsewhere[i];
+            if (f.next != kFinished) {
+                visit_other<kMode>(f, world);
+                queue(f);
+            } else {
+                sink(f.index, f.best.found() ? f.best : Hit{});
+                start(f);
+            }
+        }
+    }
+}
+
+template <Mode kMode>
+inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
+    Flight f;
+    if (!launch<kMode>(f, world, ray, after, 0)) return {};
+    while (f.next != kFinished) {
+        if (ChildRef::is_leaf(f.next)) {
+            visit_other<kMode>(f, world);
+        } else {
+            visit_node<kMode>(f);
+        }
+    }
+    return f.best.found() ? f.best : Hit{};
+}
+
+void intersect(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
+    if (count == 1) {
+        *hits = trace_one<Mode::closest>(world, *rays, nullptr);
+        return;
+    }
+    trace<Mode::closest>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
+}
+void occluded(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
+    if (count == 1) {
+        *result = trace_one<Mode::any>(world, *rays, nullptr).found();
+        return;
+    }
+    trace<Mode::any>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = hit.found(); });
+}
+void next_hit(const World& world, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept {
+    if (count == 1) {
+        *hits = trace_one<Mode::after>(world, *rays, after);
+        return;
+    }
+    trace<Mode::after>(world, rays, after, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
+}

@@ -1,0 +1,32 @@
+#include "accel/kernels/kernel_headers.h"
+
+#if defined(__x86_64__)
+
+// From here on functions are compiled for AVX2.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2,lzcnt,popcnt"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,bmi,bmi2,lzcnt,popcnt")
+#endif
+
+namespace steradian {
+namespace avx2 {
+namespace {
+#include "accel/kernels/simd_avx2.inl"
+#include "accel/kernels/kernel.inl"
+}  // namespace
+}  // namespace avx2
+}  // namespace steradian
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+namespace steradian {
+const Kernels kAvx2Kernels = {avx2::intersect, avx2::occluded, avx2::next_hit};
+}
+
+#endif

@@ -1,0 +1,32 @@
+#include "accel/kernels/kernel_headers.h"
+
+#if defined(__x86_64__)
+
+// From here on functions are compiled for AVX-512.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,lzcnt,popcnt"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,lzcnt,popcnt")
+#endif
+
+namespace steradian {
+namespace avx512 {
+namespace {
+#include "accel/kernels/simd_avx512.inl"
+#include "accel/kernels/kernel.inl"
+}  // namespace
+}  // namespace avx512
+}  // namespace steradian
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+namespace steradian {
+const Kernels kAvx512Kernels = {avx512::intersect, avx512::occluded, avx512::next_hit};
+}
+
+#endif

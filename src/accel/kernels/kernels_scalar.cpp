@@ -1,0 +1,14 @@
+#include "accel/kernels/kernel_headers.h"
+
+namespace steradian {
+namespace scalar {
+namespace {
+#include "accel/kernels/simd_scalar.inl"
+#include "accel/kernels/kernel.inl"
+}  // namespace
+}  // namespace scalar
+}  // namespace steradian
+
+namespace steradian {
+const Kernels kScalarKernels = {scalar::intersect, scalar::occluded, scalar::next_hit};
+}

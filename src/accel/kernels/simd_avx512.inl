@@ -1,0 +1,59 @@
+// Vectors for the kernels with AVX-512 (VL), still eight floats wide. Included inside the namespace of an instruction set. IEEE operations only, so that
+// every lane computes what the scalar expression computes.
+
+struct Float8 {
+    __m256 v;
+    static Float8 load(const float* p) { return {_mm256_load_ps(p)}; }
+    static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
+    void store(float* p) const { _mm256_store_ps(p, v); }
+};
+inline Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
+inline Float8 operator-(Float8 a, Float8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+inline Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+/// a > b ? a : b and a < b ? a : b, also for NaN: b then.
+inline Float8 larger(Float8 a, Float8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float8 a, Float8 b) { return _mm256_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
+
+struct Double4 {
+    __m256d v;
+    static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
+    static Double4 all(double x) { return {_mm256_set1_pd(x)}; }
+    void store(double* p) const { _mm256_store_pd(p, v); }
+};
+inline Double4 operator+(Double4 a, Double4 b) { return {_mm256_add_pd(a.v, b.v)}; }
+inline Double4 operator-(Double4 a, Double4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
+inline Double4 operator*(Double4 a, Double4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+inline Double4 larger(Double4 a, Double4 b) { return {_mm256_max_pd(a.v, b.v)}; }
+inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)}; }
+/// Bit i where a >= 0, or a <= 0, in lane i.
+inline uint32_t not_negative(Double4 a) {
+    return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_GE_OQ);
+}
+inline uint32_t not_positive(Double4 a) {
+    return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_LE_OQ);
+}
+
+/// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
+/// Writes up to kWidth entries, whatever the number.
+inline uint32_t push_met(Float8 in, Float8 out, float limit, const WideNode& node, uint32_t octant_shift, float* t_in,
+                         uint32_t* ref) {
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
+    const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
+    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    const __m256 ordered = _mm256_permutexvar_ps(lane, in.v);
+    const __mmask8 met = _mm256_mask_cmp_ps_mask(_mm256_cmp_ps_mask(ordered, _mm256_set1_ps(limit), _CMP_LE_OQ),
+                                                 ordered, _mm256_permutexvar_ps(lane, out.v), _CMP_LE_OQ);
+    _mm256_storeu_ps(t_in, _mm256_maskz_compress_ps(met, ordered));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref),
+                        _mm256_maskz_compress_epi32(met, _mm256_permutexvar_epi32(lane, child)));
+    return static_cast<uint32_t>(__builtin_popcount(met));
+}
+/// Pushes the children whose bits are set, in no particular order; returns their number. Writes kWidth entries.
+inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
+    const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(met), child));
+    return static_cast<uint32_t>(__builtin_popcount(met));
+}

@@ -1,0 +1,35 @@
+// What the kernels traverse: nodes with eight children.
+#pragma once
+
+#include <cstdint>
+
+namespace steradian {
+
+inline constexpr uint32_t kWidth = 8;
+
+/// What a child is, in 32 bits: the index of a node, or a run of up to kMaxRun items that follow each other.
+/// Items are blocks of triangles, or entries of an order of other primitives or instances.
+class ChildRef {
+public:
+    static constexpr uint32_t kMaxRun = 8;
+    static constexpr uint32_t kMaxItems = 1u << 28;
+    static constexpr uint32_t kLeaf = 1u << 31;
+
+    static constexpr uint32_t node(uint32_t index) { return index; }
+    static constexpr uint32_t leaf(uint32_t first, uint32_t count) { return kLeaf | (count - 1) << 28 | first; }
+    static constexpr bool is_leaf(uint32_t ref) { return ref >= kLeaf; }
+    static constexpr uint32_t first(uint32_t leaf_ref) { return leaf_ref & (kMaxItems - 1); }
+    static constexpr uint32_t count(uint32_t leaf_ref) { return (leaf_ref >> 28 & 7) + 1; }
+};
+
+/// Eight children, their boxes side by side for the slab test.
+struct alignas(64) WideNode {
+    float plane[3][2][kWidth];  ///< [axis][lower, upper]; +inf and -inf where there is no child: never hit
+    uint32_t child[kWidth];     ///< see ChildRef
+    /// For each of the eight octants of directions the children from far to near: bits [3 o, 3 o + 3) of entry i say
+    /// which child comes at place i. Bit 0 of the octant is set where x decreases, bit 1 for y, bit 2 for z.
+    uint32_t order[kWidth];
+};
+static_assert(sizeof(WideNode) == 256);
+
+}  // namespace steradian
