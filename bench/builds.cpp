@@ -15,7 +15,7 @@ namespace {
 
 struct Built {
     double seconds = 0;
-    int64_t bytes = 0, peak = 0;
+    int64_t bytes = 0, counted = 0, peak = 0;
 };
 
 struct Builder {
@@ -37,6 +37,7 @@ Builder our_builder(const BenchMesh& mesh, const OurSetting& setting) {
                         error = accel.error();
                     else
                         built.bytes = static_cast<int64_t>(accel->statistics().bytes);
+                    built.counted = memory_use().held;
                     built.peak = memory_use().peak;
                 });
                 if (error) return *error;
@@ -48,7 +49,7 @@ Builder embree_builder(const BenchMesh& mesh, const std::string& name, const Emb
     return {name, [&mesh, build](uint32_t threads) -> Result<Built> {
                 const EmbreeScene scene(mesh, build, threads);
                 return Built{threads == 1 ? scene.cpu_build_seconds() : scene.wall_build_seconds(), scene.bytes(),
-                             scene.peak_bytes()};
+                             scene.bytes(), scene.peak_bytes()};
             }};
 }
 
@@ -78,7 +79,7 @@ std::optional<Error> measure_builds(const BenchMesh& mesh, const Options& option
             }
         for (size_t b = 0; b < builders.size(); ++b)
             rows.push_back({mesh.name, mesh.triangles(), threads, builders[b].name, spread_of(times[b]), last[b].bytes,
-                            last[b].peak});
+                            last[b].counted, last[b].peak});
     }
     return {};
 }

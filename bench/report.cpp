@@ -116,6 +116,7 @@ void Json::write(Json& json, const BuildRow& row) {
     json.field("setting", row.setting);
     json.field("seconds", row.seconds);
     json.field("bytes", row.bytes);
+    json.field("counted", row.counted);
     json.field("peak", row.peak);
 }
 

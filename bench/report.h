@@ -47,7 +47,8 @@ struct BuildRow {
     uint32_t threads = 0;
     std::string setting;  ///< "Embree ..." or one of ours
     Spread seconds;       ///< one thread: processor time, several: wall
-    int64_t bytes = 0;    ///< held by the result
+    int64_t bytes = 0;    ///< held by the result, as the engine says
+    int64_t counted = 0;  ///< the same as counted from outside
     int64_t peak = 0;     ///< most that was held during the build
 };
 
