@@ -154,8 +154,8 @@ BenchMesh landscape(size_t triangles) {
     m.positions.reserve(triangles + triangles / 8);
     m.indices.reserve(3 * triangles + triangles / 4);
     const auto k = static_cast<uint32_t>(std::sqrt(0.15 * double(triangles) / 2));
-    // As dense whatever the size: 60 m to a side for each million triangles.
-    const auto extent = static_cast<float>(30 * std::sqrt(double(triangles) / 1e6));
+    // As dense whatever the size: 32 m to a side for each million triangles.
+    const auto extent = static_cast<float>(16 * std::sqrt(double(triangles) / 1e6));
     add_grid(m, k, [&](float u, float v) {
         const float x = 2 * u - 1, z = 2 * v - 1;
         return Vec3{x * extent, ground(x, z, extent), z * extent};

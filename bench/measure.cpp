@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "base/parallel.h"
@@ -21,8 +22,16 @@ public:
         if (!scene) scene = std::make_unique<EmbreeScene>(mesh_, trial.build);
         return scene->tracer(trial.feed);
     }
+    /// Between races: lets go of what was built when it is much, to be built again if needed.
+    void limit_memory() {
+        int64_t bytes = 0;
+        for (const auto& [build, scene] : scenes_) bytes += scene->bytes();
+        if (bytes > kMostBytesKept) scenes_.clear();
+    }
 
 private:
+    static constexpr int64_t kMostBytesKept = int64_t(4) << 30;
+
     const BenchMesh& mesh_;
     std::map<EmbreeBuild, std::unique_ptr<EmbreeScene>> scenes_;
 };
@@ -45,34 +54,48 @@ struct Course {
 
 std::string setting_of(const Trial& trial) { return trial.build.str() + ", " + trial.feed.str(); }
 
-/// One race: all our settings, Embree's fastest and its fastest robust one.
-void race_one_thread(Course& course, const RaySet& set, const std::vector<Trial>& trials, Rays rays) {
+/// The entrant with the best median among `lanes` from `first` on.
+size_t winner(const std::vector<Lane>& lanes, size_t first, size_t count) {
+    const auto begin = lanes.begin() + ptrdiff_t(first);
+    const auto best = std::min_element(begin, begin + ptrdiff_t(count), [](const Lane& a, const Lane& b) {
+        return a.seconds.median < b.seconds.median;
+    });
+    return size_t(best - lanes.begin());
+}
+
+/// One race: all our settings, the finalists of Embree and those of its robust mode. Returns the winner of Embree's.
+const Trial* race_one_thread(Course& course, const RaySet& set, const std::vector<Trial>& trials, Rays rays) {
     const bool single = rays == Rays::single;
+    std::vector<const Trial*> embree = finalists(trials, false, rays);
+    const std::vector<const Trial*> robust = finalists(trials, true, rays);
+    embree.insert(embree.end(), robust.begin(), robust.end());
     std::vector<Entrant> entrants;
     for (const Contender& c : course.ours)
         entrants.push_back({single ? our_single_rays(c.accel) : our_batches(c.accel)});
-    const Trial* const best[] = {fastest(trials, false, rays), fastest(trials, true, rays)};
-    for (const Trial* trial : best)
-        if (trial) entrants.push_back({course.scenes.tracer(*trial)});
+    for (const Trial* trial : embree) entrants.push_back({course.scenes.tracer(*trial)});
     const std::vector<Lane> lanes = race(set, entrants, course.race_options(false));
 
-    const auto entry = [&](size_t lane, std::string setting) {
-        return Entry{std::move(setting), lanes[lane].seconds, count_different(lanes[0].answers, lanes[lane].answers)};
+    const size_t ours = course.ours.size();
+    const auto entry = [&](size_t lane) {
+        const std::string setting = lane < ours ? course.ours[lane].name : setting_of(*embree[lane - ours]);
+        return Entry{setting, lanes[lane].seconds, count_different(lanes[0].answers, lanes[lane].answers)};
     };
-    for (size_t i = 0; i < course.ours.size(); ++i) {
-        RayRow row{course.mesh.name, set.name, single, set.rays.size(), entry(i, course.ours[i].name), {}, {}};
-        if (best[0]) row.fastest = entry(course.ours.size(), setting_of(*best[0]));
-        if (best[1]) row.robust = entry(course.ours.size() + 1, setting_of(*best[1]));
+    const size_t best = winner(lanes, ours, embree.size());
+    const size_t best_robust = winner(lanes, lanes.size() - robust.size(), robust.size());
+    for (size_t i = 0; i < ours; ++i) {
+        RayRow row{course.mesh.name, set.name, single, set.rays.size(), entry(i), {}, {}};
+        if (!embree.empty()) row.fastest = entry(best);
+        if (!robust.empty()) row.robust = entry(best_robust);
         course.report.rays.push_back(std::move(row));
     }
+    return embree.empty() ? nullptr : embree[best - ours];
 }
 
-/// One race: ours and Embree's fastest setting, each on one thread and on all.
-void race_threads(Course& course, const RaySet& set, const std::vector<Trial>& trials) {
+/// One race: ours and a setting of Embree, each on one thread and on all.
+void race_threads(Course& course, const RaySet& set, const Trial* best) {
     const uint32_t all = hardware_threads();
     const Contender& ours = course.ours[0];
     std::vector<Entrant> entrants = {{our_batches(ours.accel), 1}, {our_batches(ours.accel), all}};
-    const Trial* const best = fastest(trials, false, Rays::any);
     if (best)
         for (const uint32_t threads : {1u, all}) entrants.push_back({course.scenes.tracer(*best), threads});
     const std::vector<Lane> lanes = race(set, entrants, course.race_options(true));
@@ -107,9 +130,14 @@ void measure_rays(Course& course) {
     const std::vector<std::vector<Trial>> trials = trials_for(course, sets);
     for (size_t i = 0; i < sets.size(); ++i) {
         fmt::print(stderr, "{}: {}, {} rays\n", course.mesh.name, sets[i].name, sets[i].rays.size());
-        if (course.options.has_part("rays"))
-            for (const Rays rays : {Rays::any, Rays::single}) race_one_thread(course, sets[i], trials[i], rays);
-        if (course.options.has_part("threads") && hardware_threads() > 1) race_threads(course, sets[i], trials[i]);
+        course.scenes.limit_memory();
+        const std::vector<const Trial*> ranked = finalists(trials[i], false, Rays::any);
+        const Trial* best = ranked.empty() ? nullptr : ranked[0];
+        if (course.options.has_part("rays")) {
+            best = race_one_thread(course, sets[i], trials[i], Rays::any);
+            race_one_thread(course, sets[i], trials[i], Rays::single);
+        }
+        if (course.options.has_part("threads") && hardware_threads() > 1) race_threads(course, sets[i], best);
     }
 }
 

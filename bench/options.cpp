@@ -152,8 +152,8 @@ std::string help_text() {
         "usage: accel_bench [OPTION]... [MESH]...\n\n"
         "Ray throughput, build times and memory beside Embree: the same meshes and the same recorded rays, in one\n"
         "process. MESH is a generated mesh by its name, or an OBJ or PLY file; \"model.ply:1\" divides every triangle\n"
-        "into four once. Every setting of Embree is tried briefly for each kind of ray; the fastest one and the\n"
-        "fastest robust one are then measured in repetitions that alternate with ours. Only ratios of one run mean\n"
+        "into four once. Every setting of Embree is tried briefly for each kind of ray; the best few, and the best\n"
+        "few robust ones, are then measured in repetitions that alternate with ours. Only ratios of one run mean\n"
         "much.\n\n";
     for (const Option& option : table())
         text += fmt::format("  {:<24} {}\n", fmt::format("{} {}", option.name, option.argument), option.help);

@@ -48,8 +48,8 @@ void study_rays(const BenchMesh& mesh, const Accel& ours, const Options& options
     for (size_t i = 0; i < sets.size(); ++i) {
         std::vector<Entrant> entrants = {{our_batches(ours)}};
         std::optional<EmbreeScene> scene;
-        if (const Trial* best = fastest(tried[i], false, Rays::any))
-            entrants.push_back({scene.emplace(mesh, best->build).tracer(best->feed)});
+        if (const auto ranked = finalists(tried[i], false, Rays::any); !ranked.empty())
+            entrants.push_back({scene.emplace(mesh, ranked[0]->build).tracer(ranked[0]->feed)});
         const std::vector<Lane> lanes = race(sets[i], entrants, races);
         csv.add_rays(mesh.triangles(), sets[i], "Steradian", lanes[0].seconds);
         if (scene) csv.add_rays(mesh.triangles(), sets[i], "Embree", lanes[1].seconds);

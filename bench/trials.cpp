@@ -1,9 +1,13 @@
 #include "trials.h"
 
+#include <algorithm>
+
 #include "ours.h"
 
 namespace steradian::bench {
 namespace {
+
+constexpr ptrdiff_t kFinalists = 3;
 
 /// One race of ours against all feeds of one scene.
 void try_feeds(const EmbreeScene& scene, const EmbreeBuild& build, const Accel& ours, const RaySet& set,
@@ -35,13 +39,18 @@ std::vector<std::vector<Trial>> try_settings(const BenchMesh& mesh, const Accel&
     return trials;
 }
 
-const Trial* fastest(const std::vector<Trial>& trials, bool robust, Rays rays) {
-    const Trial* best = nullptr;
-    for (const Trial& trial : trials) {
-        if (robust && !trial.build.robust) continue;
-        if (rays == Rays::single && trial.feed.kind != EmbreeFeed::Kind::single) continue;
-        if (!best || trial.relative() < best->relative()) best = &trial;
-    }
+std::vector<const Trial*> finalists(const std::vector<Trial>& trials, bool robust, Rays rays) {
+    const auto is_single = [](const Trial* trial) { return trial->feed.kind == EmbreeFeed::Kind::single; };
+    std::vector<const Trial*> ranked;
+    for (const Trial& trial : trials)
+        if (!robust || trial.build.robust)
+            if (rays == Rays::any || is_single(&trial)) ranked.push_back(&trial);
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const Trial* a, const Trial* b) { return a->relative() < b->relative(); });
+    const auto few = ranked.begin() + std::min(kFinalists, ranked.end() - ranked.begin());
+    const auto single = std::find_if(ranked.begin(), ranked.end(), is_single);
+    std::vector<const Trial*> best(ranked.begin(), few);
+    if (single >= few && single != ranked.end()) best.push_back(*single);
     return best;
 }
 

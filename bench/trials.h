@@ -24,8 +24,9 @@ std::vector<std::vector<Trial>> try_settings(const BenchMesh& mesh, const Accel&
                                              const std::vector<EmbreeBuild>& builds, const RaceOptions& options);
 
 enum class Rays : uint8_t { any, single };
-/// Of the trials that are robust (if asked) and hand over single rays (if asked); null when there is none.
-const Trial* fastest(const std::vector<Trial>& trials, bool robust, Rays rays);
+/// The best few of the trials for a longer race, best first: trials are short, so the first is not always the fastest.
+/// At least one of them hands over single rays. Only robust ones (if asked); only single rays (if asked).
+std::vector<const Trial*> finalists(const std::vector<Trial>& trials, bool robust, Rays rays);
 
 TriedRow row_of(const Trial& trial, const BenchMesh& mesh, const RaySet& set);
 
