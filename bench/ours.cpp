@@ -14,7 +14,7 @@ AccelOptions with_builder(BvhBuilder builder) {
 class OurTracer : public Tracer {
 public:
     OurTracer(const Accel& accel, const RaySet& set, size_t chunk)
-        : accel_(accel), any_hit_(set.any_hit), rays_(chunk), hits_(chunk), occluded_(chunk) {}
+        : accel_(accel), set_(set), rays_(chunk), hits_(chunk), occluded_(chunk) {}
     void load(std::span<const Ray> rays) override {
         count_ = rays.size();
         std::copy(rays.begin(), rays.end(), rays_.begin());
@@ -28,7 +28,7 @@ protected:
     std::span<uint8_t> occluded() { return std::span(occluded_).first(count_); }
 
     const Accel& accel_;
-    const bool any_hit_;
+    const RaySet& set_;
 
 private:
     std::vector<Ray> rays_;
@@ -41,7 +41,7 @@ class BatchTracer : public OurTracer {
 public:
     using OurTracer::OurTracer;
     void trace() override {
-        if (any_hit_) {
+        if (set_.any_hit) {
             accel_.occluded(rays(), occluded());
         } else {
             accel_.intersect(rays(), hits());
@@ -54,7 +54,7 @@ public:
     using OurTracer::OurTracer;
     void trace() override {
         for (size_t i = 0; i < rays().size(); ++i) {
-            if (any_hit_) {
+            if (set_.any_hit) {
                 occluded()[i] = accel_.occluded(rays()[i]);
             } else {
                 hits()[i] = accel_.intersect(rays()[i]);

@@ -37,7 +37,8 @@ class Axis:
         self.start, self.end, self.log = start, end, logarithmic
         low, high = min(values), max(values)
         if logarithmic:
-            self.low, self.high = math.floor(math.log10(low) + 1e-9), math.ceil(math.log10(high) - 1e-9)
+            slack = 0.02  # decades: 972 triangles may stand on the line of 1000
+            self.low, self.high = math.floor(math.log10(low) + slack), math.ceil(math.log10(high) - slack)
             self.high = max(self.high, self.low + 1)
             self.ticks = [10.0**e for e in range(self.low, self.high + 1)]
         else:
