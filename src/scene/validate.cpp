@@ -11,8 +11,6 @@
 namespace steradian {
 namespace {
 
-bool usable_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
-
 /// Thrown inside this file only; validate() converts it.
 struct Fault {
     std::string message;
@@ -57,9 +55,7 @@ private:
             throw Fault{fmt::format("{}: refers to {} {}, but there are {}", where_, what, index(id), pool.size())};
     }
     void color(Rgb c, const char* what) const { require(is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0, what); }
-    void point(Vec3 p, const char* what) const {
-        require(is_finite(p) && max_component(abs(p)) <= kMaxCoordinate, what);
-    }
+    void point(Vec3 p, const char* what) const { require(usable_position(p), what); }
     void direction(Vec3 d, const char* what) const {
         require(is_finite(d) && (d.x != 0 || d.y != 0 || d.z != 0), what);
     }
