@@ -9,59 +9,103 @@
 namespace steradian {
 namespace {
 
-struct Ball {
+/// Calls `visit` for every vertex that a triangle uses and that can be rendered.
+template <class Visit>
+void each_vertex(const Scene& scene, Visit visit) {
+    for (const Mesh& mesh : scene.meshes)
+        for (const uint32_t i : mesh.indices)
+            if (usable_position(mesh.positions[i])) visit(Vec3d(mesh.positions[i]));
+}
+
+/// Where the model is: the middle of its bounding box, half the box's diagonal, its lowest height.
+struct Extent {
     Vec3d center;
-    double radius = 1;
+    double radius = 1, floor = -1;
 };
 
-/// Around the bounding box of everything that can be rendered. A lone point gets a ball that it can be seen in.
-Ball bounding_ball(const Scene& scene) {
+/// A lone point gets a ball that it can be seen in.
+Extent extent_of(const Scene& scene) {
     Vec3d lo{kMaxCoordinate, kMaxCoordinate, kMaxCoordinate}, hi = -lo;
     bool any = false;
-    for (const Mesh& mesh : scene.meshes) {
-        for (const uint32_t i : mesh.indices) {
-            const Vec3 p = mesh.positions[i];
-            if (!is_finite(p) || max_component(abs(p)) > kMaxCoordinate) continue;
-            any = true;
-            lo = {min_of<double>(lo.x, p.x), min_of<double>(lo.y, p.y), min_of<double>(lo.z, p.z)};
-            hi = {max_of<double>(hi.x, p.x), max_of<double>(hi.y, p.y), max_of<double>(hi.z, p.z)};
-        }
-    }
+    each_vertex(scene, [&](Vec3d p) {
+        any = true;
+        lo = {min_of(lo.x, p.x), min_of(lo.y, p.y), min_of(lo.z, p.z)};
+        hi = {max_of(hi.x, p.x), max_of(hi.y, p.y), max_of(hi.z, p.z)};
+    });
     if (!any) return {};
-    Ball ball{(lo + hi) * 0.5, length(hi - lo) * 0.5};
-    const double smallest = max_of(1e-6 * length(ball.center), 1e-12);
-    ball.radius = max_of(ball.radius, smallest);
-    return ball;
+    const Vec3d center = (lo + hi) * 0.5;
+    const double smallest = max_of(1e-6 * length(center), 1e-12);
+    return {center, max_of(length(hi - lo) * 0.5, smallest), lo.y};
+}
+
+/// The axes of a view: to the right, upwards, and back towards the camera.
+struct ViewAxes {
+    Vec3d right, up, back;
+
+    explicit ViewAxes(Vec3d towards_camera) : back(normalize(towards_camera)) {
+        right = normalize(cross(Vec3d{0, 1, 0}, back));
+        up = cross(back, right);
+    }
+};
+
+/// The nearest place from which a picture with this slope (the tangent of half its field of view, both ways) holds
+/// every vertex. One along an axis a of the picture with coordinate p and depth z is inside when
+/// |p - c| <= slope (d - z), so that the largest p + slope z and -p + slope z give the place c and the distance d.
+PerspectiveCamera frame(const Scene& scene, const Extent& extent, const ViewAxes& axes, double slope) {
+    Vec3d high{-kInfinity, -kInfinity, -kInfinity}, low = high;
+    each_vertex(scene, [&](Vec3d p) {
+        const Vec3d q = p - extent.center;
+        const double x = dot(q, axes.right), y = dot(q, axes.up), z = dot(q, axes.back);
+        high = {max_of(high.x, x + slope * z), max_of(high.y, y + slope * z), max_of(high.z, z)};
+        low = {max_of(low.x, -x + slope * z), max_of(low.y, -y + slope * z), 0};
+    });
+    const double tight = max_of(high.x + low.x, high.y + low.y) / (2 * slope);
+    const double distance = max_of(tight, high.z + extent.radius);
+    const Vec3d middle = extent.center + axes.right * ((high.x - low.x) * 0.5) + axes.up * ((high.y - low.y) * 0.5);
+    PerspectiveCamera camera;
+    camera.position = Vec3(middle + axes.back * distance);
+    camera.look_at = Vec3(middle);
+    return camera;
+}
+
+/// A square light of the given half side that faces the model's middle.
+Rectangle softbox(const Extent& extent, Vec3d towards, double distance, double half_side) {
+    const ViewAxes axes(towards);
+    Rectangle r;
+    r.center = Vec3(extent.center + axes.back * (distance * extent.radius));
+    r.half_u = Vec3(axes.up * (half_side * extent.radius));
+    r.half_v = Vec3(axes.right * (half_side * extent.radius));  // half_u × half_v looks back at the model
+    return r;
 }
 
 }  // namespace
 
 void add_studio(LoadedScene& loaded, Assets& assets) {
-    constexpr double kFieldOfView = 35, kMargin = 1.1;
-    const Ball ball = bounding_ball(loaded.scene);
-    const Vec3d c = ball.center;
-
-    const Vec3d towards_camera = normalize(Vec3d{0.55, 0.35, 1});
-    const double distance = kMargin * ball.radius / math::sin(kFieldOfView * std::numbers::pi / 360);
-    PerspectiveCamera camera;
-    camera.position = Vec3(c + towards_camera * distance);
-    camera.look_at = Vec3(c);
+    constexpr double kFieldOfView = 25, kFilled = 0.86;
+    const Extent extent = extent_of(loaded.scene);
+    const double slope = kFilled * math::tan(kFieldOfView * std::numbers::pi / 360);
+    PerspectiveCamera camera = frame(loaded.scene, extent, ViewAxes({0.5, 0.42, 1}), slope);
     camera.vertical_fov = static_cast<float>(kFieldOfView);
     assets.add_camera(camera, "camera");
 
-    // A square with sides of 3 radii, 5 radii away, facing the model: it sends E = L (3/5)² to the centre, nearly.
-    const Vec3d towards_key = normalize(Vec3d{-0.8, 1.1, 0.9});
-    const Vec3d u = normalize(cross(towards_key, Vec3d{0, 1, 0})), v = cross(u, towards_key);
-    const double half = 1.5 * ball.radius;
-    Rectangle key;
-    key.center = Vec3(c + towards_key * (5 * ball.radius));
-    key.half_u = Vec3(u * half);
-    key.half_v = Vec3(v * half);  // half_u × half_v looks back at the model
-    const ShapeId shape = assets.add_shape(key, "key light");
-    const InstanceId instance = assets.add_instance({shape, assets.default_material(true), Affine{}}, "key light");
-    assets.add_light(AreaLight{instance, {7, 6.8f, 6.5f}, false, 1}, "key light");
+    // A hair below the model, so that a flat underside does not lie in the floor itself.
+    constexpr double kFloorRadius = 60, kGap = 2e-3;
+    Disk floor;
+    floor.center = Vec3(Vec3d{extent.center.x, extent.floor - kGap * extent.radius, extent.center.z});
+    floor.normal = {0, 1, 0};
+    floor.radius = static_cast<float>(min_of<double>(kFloorRadius * extent.radius, kMaxCoordinate));
+    const MaterialId grey = assets.add_diffuse({0.3f, 0.31f, 0.33f}, true, "floor");
+    assets.add_instance({assets.add_shape(floor, "floor"), grey, Affine{}}, "floor");
+
+    const auto add_softbox = [&](const Rectangle& shape, Rgb radiance, const std::string& name) {
+        const InstanceId instance =
+            assets.add_instance({assets.add_shape(shape, name), assets.default_material(true), Affine{}}, name);
+        assets.add_light(AreaLight{instance, radiance, false, 1}, name);
+    };
+    add_softbox(softbox(extent, {-0.9, 1.2, 0.8}, 5, 1.5), {8.8f, 8.2f, 7.4f}, "key light");
+    add_softbox(softbox(extent, {1.0, 0.7, -0.9}, 5, 1.2), {4, 4.5f, 5.2f}, "rim light");
     EnvironmentLight fill;
-    fill.radiance = {0.3f, 0.32f, 0.35f};
+    fill.radiance = {0.26f, 0.28f, 0.31f};
     assets.add_light(fill, "studio");
 }
 

@@ -5,10 +5,11 @@
 
 namespace steradian {
 
-/// Frames all instances of the scene: a three-quarter view from the right, slightly above, whose vertical field of view
-/// (35°) holds the bounding sphere with a tenth to spare. Light comes from a grey environment and one rectangular key
-/// light above on the left, behind the camera; both scale with the model, so that its size does not change the picture.
-/// A white surface that faces the key light sends back a radiance of about 1.
+/// A photographer's table. The camera looks from the front right and above, through a long lens (a vertical field of
+/// view of 25°), from the nearest place where a square picture holds every vertex with 14 % to spare; wider pictures
+/// show more at the sides. The model stands on a wide grey floor that fills the rest of the picture. Light comes from a
+/// warm softbox on the left, a weaker and cooler one behind on the right, and a grey environment. Everything scales
+/// with the model, so that its size does not change the picture.
 void add_studio(LoadedScene& loaded, Assets& assets);
 
 }  // namespace steradian

@@ -10,6 +10,8 @@ namespace steradian {
 /// Coordinates beyond this bound are not accepted: the arithmetic of the kernels is proved for what lies within it.
 inline constexpr float kMaxCoordinate = 1e15f;
 
+inline bool usable_position(Vec3 p) { return is_finite(p) && max_component(abs(p)) <= kMaxCoordinate; }
+
 inline constexpr uint32_t kNoHit = 0xffffffffu;
 
 /// Points o + t d for t in [tmin, tmax], both ends included. A negative or NaN tmin counts as 0; a NaN tmax means an

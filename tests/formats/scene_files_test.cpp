@@ -227,37 +227,105 @@ TEST_F(SceneFiles, WithoutFacesThereIsNothingToLight) {
     EXPECT_NE(model.error().message.find("no faces"), std::string::npos);
 }
 
-TEST_F(SceneFiles, AModelByItselfIsFramedAndLit) {
-    for (const double scale : {1e-6, 1.0, 1e6}) {
-        std::string text;
-        for (int i = 0; i < 8; ++i)
-            text += "v " + std::to_string(7 * scale + (i & 1 ? scale : -scale)) + " " +
-                    std::to_string(i & 2 ? 2 * scale : -2 * scale) + " " + std::to_string(i & 4 ? scale : -scale) +
-                    "\n";
-        text += "f 1 2 3\nf 5 6 7 8\n";
-        spit(folder_.path() / "box.obj", text);
+TEST_F(SceneFiles, AModelWithoutUsableVerticesSaysWhyThereIsNothing) {
+    spit(folder_.path() / "nan.obj", "v nan 0 0\nv 1 nan 0\nv 0 1 inf\nf 1 2 3\nf 3 2 1\n");
+    spit(folder_.path() / "far.ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "1e16 0 0\n0 1e16 0\n0 0 1e16\n3 0 1 2\n");
+    const auto message = [&](const char* name) { return load_scene(folder_.file(name)).error().message; };
+    EXPECT_EQ(message("nan.obj"),
+              "there is nothing to render: all 2 faces have coordinates that are not finite or beyond 1e15");
+    EXPECT_EQ(message("far.ply"),
+              "there is nothing to render: the only face has coordinates that are not finite or beyond 1e15");
+}
+
+TEST_F(SceneFiles, ReflectancesOfMtlAboveOneAreCountedWithThePlaceOfTheFirst) {
+    spit(folder_.path() / "bright.mtl",
+         "newmtl white\nKd 1 1 1\nnewmtl bright\nKd 1 1.5 1\nnewmtl mirror\nillum 3\nKs 2 2 2\nnewmtl glass\nillum 7\n"
+         "Tf 3\nnewmtl unused\nKd 4 4 4\nnewmtl dark\nKd -1 0 0\n");
+    std::string text = "mtllib bright.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (const char* name : {"white", "bright", "mirror", "glass", "dark"})
+        text += "usemtl " + std::string(name) + "\nf 1 2 3\n";
+    spit(folder_.path() / "bright.obj", text);
+    const LoadedScene loaded = load_scene(folder_.file("bright.obj")).value();
+    ASSERT_EQ(loaded.diagnostics.warnings().size(), 2u);
+    const Warning& clamped = loaded.diagnostics.warnings()[0];
+    EXPECT_NE(clamped.message.find("'Kd' is out of range and was clamped"), std::string::npos) << clamped.message;
+    const Warning& above = loaded.diagnostics.warnings()[1];
+    EXPECT_NE(above.message.find("reflectance above 1"), std::string::npos) << above.message;
+    EXPECT_EQ(above.count, 3u);
+    EXPECT_EQ(above.where.str(), folder_.file("bright.mtl") + ":3:8");
+}
+
+/// A model of eight vertices, of which the last pulls the middle of the picture aside.
+std::string framed_model(double scale) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+        const double x = (i & 1 ? 1 : -1) + 7.0, y = i & 2 ? 2 : -2, z = i == 7 ? 3 : i & 4 ? 1 : -1;
+        for (const double c : {x, y, z}) text += (c == x ? "v " : " ") + std::to_string(c * scale);
+        text += '\n';
+    }
+    return text + "f 1 2 3\nf 5 6 7 8\nf 4 1 2\n";
+}
+
+TEST_F(SceneFiles, AModelByItselfFillsASquarePicture) {
+    for (const double scale : {1e-3, 1.0, 1e6}) {
+        spit(folder_.path() / "box.obj", framed_model(scale));
         const auto loaded = load_scene(folder_.file("box.obj"));
         ASSERT_TRUE(loaded.ok()) << loaded.error().str();
-        const Scene& s = loaded->scene;
-        const auto& camera = std::get<PerspectiveCamera>(s.cameras.at(0));
-        // Every vertex is inside the cone that the vertical field of view inscribes in a square picture.
+        const auto& camera = std::get<PerspectiveCamera>(loaded->scene.cameras.at(0));
         const Vec3d eye(camera.position), view = normalize(Vec3d(camera.look_at) - eye);
-        const double limit = std::cos(camera.vertical_fov / 2 * 3.14159265358979 / 180);
-        double widest = 1;
-        for (const Vec3 p : s.meshes.at(0).positions) widest = std::min(widest, dot(normalize(Vec3d(p) - eye), view));
-        EXPECT_GT(widest, limit);
-        // … and the margin is not wasteful: the model takes at least a third of the height.
-        EXPECT_LT(widest, std::cos(camera.vertical_fov / 6 * 3.14159265358979 / 180));
-        // A key light that faces the model, and an environment.
-        ASSERT_EQ(s.lights.size(), 2u);
-        const auto& key = std::get<AreaLight>(s.lights[0]);
-        const auto& rectangle = std::get<Rectangle>(s.shapes[index(s.instances[index(key.instance)].shape)]);
-        const Vec3d to_model = Vec3d(camera.look_at) - Vec3d(rectangle.center);
-        EXPECT_GT(dot(normalize(to_model), normalize(cross(Vec3d(rectangle.half_u), Vec3d(rectangle.half_v)))), 0.999);
-        EXPECT_GT(rectangle.center.y, camera.look_at.y);
-        EXPECT_LT(rectangle.center.x, camera.look_at.x);
-        EXPECT_TRUE(std::holds_alternative<EnvironmentLight>(s.lights[1]));
+        const Vec3d right = normalize(cross(view, Vec3d(camera.up))), up = cross(right, view);
+        const double slope = std::tan(camera.vertical_fov / 2 * 3.14159265358979 / 180);
+        double left_edge = 0, right_edge = 0, low_edge = 0, high_edge = 0;
+        for (const Vec3 p : loaded->scene.meshes.at(0).positions) {
+            const Vec3d q = Vec3d(p) - eye;
+            const double x = dot(q, right) / (dot(q, view) * slope), y = dot(q, up) / (dot(q, view) * slope);
+            left_edge = std::min(left_edge, x), right_edge = std::max(right_edge, x);
+            low_edge = std::min(low_edge, y), high_edge = std::max(high_edge, y);
+        }
+        // In the middle, and the larger side takes what the margin leaves of the picture.
+        EXPECT_NEAR(left_edge, -right_edge, 0.05);  // the smaller side nearly
+        EXPECT_NEAR(low_edge, -high_edge, 1e-4);
+        EXPECT_NEAR(std::max(right_edge, high_edge), 0.86, 1e-4);
     }
+}
+
+TEST_F(SceneFiles, AModelByItselfStandsOnAFloorBetweenTwoLights) {
+    spit(folder_.path() / "box.obj", framed_model(1));
+    const Scene s = load_scene(folder_.file("box.obj")).value().scene;
+    const auto shape_of = [&](InstanceId i) { return s.shapes[index(s.instances[index(i)].shape)]; };
+    ASSERT_EQ(s.instances.size(), 4u);
+    const auto floor = std::get<Disk>(shape_of(InstanceId{1}));
+    EXPECT_LT(floor.center.y, -2);
+    EXPECT_GT(floor.center.y, -2.02f);
+    EXPECT_GT(floor.radius, 100);
+    ASSERT_EQ(s.lights.size(), 3u);
+    const Vec3d middle{7, 0, 1};  // of the bounding box
+    for (size_t i = 0; i < 2; ++i) {
+        const auto light = std::get<Rectangle>(shape_of(std::get<AreaLight>(s.lights[i]).instance));
+        const Vec3d to_model = normalize(middle - Vec3d(light.center));
+        EXPECT_GT(dot(to_model, normalize(cross(Vec3d(light.half_u), Vec3d(light.half_v)))), 0.999);
+        EXPECT_GT(light.center.y, 2);
+        EXPECT_EQ(light.center.x < middle.x, i == 0);  // the first on the left, in front
+        EXPECT_EQ(light.center.z > middle.z, i == 0);
+    }
+    EXPECT_TRUE(std::holds_alternative<EnvironmentLight>(s.lights[2]));
+}
+
+TEST_F(SceneFiles, TheSizeOfAModelOnlyScalesItsStudio) {
+    const auto studio = [&](const char* scale) {
+        const std::string s(scale);
+        spit(folder_.path() / "scaled.obj", "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nf 1 2 3\n");
+        return load_scene(folder_.file("scaled.obj")).value().scene;
+    };
+    const Scene one = studio("1"), four = studio("4");
+    const auto& camera = std::get<PerspectiveCamera>(one.cameras[0]);
+    EXPECT_EQ(std::get<PerspectiveCamera>(four.cameras[0]).position, camera.position * 4);
+    EXPECT_EQ(std::get<Disk>(four.shapes[1]).radius, std::get<Disk>(one.shapes[1]).radius * 4);
+    EXPECT_EQ(std::get<Rectangle>(four.shapes[2]).half_u, std::get<Rectangle>(one.shapes[2]).half_u * 4);
+    EXPECT_EQ(std::get<AreaLight>(four.lights[0]).radiance, std::get<AreaLight>(one.lights[0]).radiance);
 }
 
 TEST_F(SceneFiles, MtlBecomesMaterials) {
