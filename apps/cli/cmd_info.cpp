@@ -9,7 +9,7 @@
 #include "math/transform.h"
 #include "picture_info.h"
 #include "progress.h"
-#include "scene/names.h"
+#include "base/names.h"
 #include "steradian/load.h"
 
 namespace steradian::cli {

@@ -15,7 +15,7 @@
 #include "base/text.h"
 #include "command.h"
 #include "progress.h"
-#include "scene/names.h"
+#include "base/names.h"
 #include "scene/validate.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
@@ -31,7 +31,7 @@ struct RenderOptions {
     std::vector<std::string> outputs;
     std::optional<uint64_t> spp, seed;
     std::optional<uint32_t> max_depth;
-    std::string size, camera, integrator, filter, sampler, crop, bvh = "sah";
+    std::string size, camera, integrator, filter, sampler, crop, bvh = "sah", isa = "auto";
     Execution execution;
     PictureOptions picture;
     bool quiet = false, json = false;
@@ -301,6 +301,7 @@ int run_render(const RenderOptions& given) {
     RenderOptions o = given;
     if (o.outputs.empty() && !o.json) o.outputs.push_back(default_output(o.scene));
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
+    o.execution.isa = *find_name<Isa>(o.isa);
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     const auto said = parse_overrides(o);
     if (!said) return report(said.error());
@@ -380,6 +381,12 @@ void add_render(CLI::App& app, Action& action) {
         ->group("Execution");
     c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")
         ->check(one_of<BvhBuilder>())
+        ->capture_default_str()
+        ->group("Execution");
+    c->add_option("--isa", o->isa,
+                  "Instructions of the ray kernels: auto (the best that the machine has, or what the environment "
+                  "variable STERADIAN_ISA says), scalar, sse4, avx2, avx512 or neon; never changes the picture")
+        ->check(one_of<Isa>())
         ->capture_default_str()
         ->group("Execution");
     add_count<uint32_t>(c, "--bvh-max-depth", o->execution.bvh_max_depth, 1, 64,

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "scene/names.h"
+#include "base/names.h"
 #include "steradian/version.h"
 
 namespace steradian {

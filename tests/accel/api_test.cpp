@@ -1,9 +1,12 @@
 // What a caller may get wrong, and hostile rays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cfenv>
+#include <cstdlib>
 #include <limits>
 
+#include "accel/kernels/kernels.h"
 #include "scenes.h"
 
 namespace steradian::test {
@@ -138,6 +141,48 @@ TEST(Api, IndependentOfTheCallersRoundingMode) {
     ASSERT_TRUE(accel);
     EXPECT_EQ(mode, FE_UPWARD);
     for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], wanted[i]));
+}
+
+/// Sets a variable for as long as it lives.
+class Environment {
+public:
+    Environment(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+    ~Environment() { ::unsetenv(name_); }
+
+private:
+    const char* name_;
+};
+
+TEST(Isa, ChosenByOptionThenEnvironmentThenMachine) {
+    const std::vector<Isa> here = supported_isas();
+    ASSERT_EQ(here.back(), Isa::scalar);
+    EXPECT_EQ(*select_kernels(Isa::automatic), *select_kernels(here.front()));
+    const Environment environment("STERADIAN_ISA", "scalar");
+    EXPECT_EQ(*select_kernels(Isa::automatic), &kScalarKernels);
+    EXPECT_EQ(*select_kernels(here.front()), *select_kernels(here.front()));
+    for (const char* name : {"", "auto"}) {
+        const Environment other("STERADIAN_ISA", name);
+        EXPECT_EQ(*select_kernels(Isa::automatic), *select_kernels(here.front()));
+    }
+}
+
+TEST(Isa, RefusesWhatTheMachineLacksAndSaysWhatItHas) {
+    const std::vector<Isa> here = supported_isas();
+    for (const Isa isa : {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512, Isa::neon}) {
+        const Result<const Kernels*> kernels = select_kernels(isa);
+        const bool has = std::find(here.begin(), here.end(), isa) != here.end();
+        ASSERT_EQ(kernels.ok(), has);
+        if (has) continue;
+        EXPECT_EQ(kernels.error().code, ErrorCode::usage);
+        EXPECT_NE(kernels.error().hint.find("scalar"), std::string::npos);
+        AccelOptions options;
+        options.isa = isa;
+        EXPECT_FALSE(Accel::build({}, {}, options));
+    }
+    const Environment environment("STERADIAN_ISA", "mmx");
+    const Result<const Kernels*> kernels = select_kernels(Isa::automatic);
+    ASSERT_FALSE(kernels);
+    EXPECT_NE(kernels.error().message.find("mmx"), std::string::npos);
 }
 
 }  // namespace

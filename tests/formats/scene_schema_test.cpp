@@ -6,7 +6,7 @@
 
 #include "formats/json/document.h"
 #include "formats/scene_json/keys.h"
-#include "scene/names.h"
+#include "base/names.h"
 #include "support/support.h"
 
 namespace steradian::scene_json {

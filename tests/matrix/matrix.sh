@@ -28,13 +28,20 @@ case ${STERADIAN_TEST_ALL:-0} in '' | 0) ;; *) full=yes ;; esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# The instruction sets that the program can use here, as it says itself when asked for one that does not exist.
+isas=$(STERADIAN_ISA=? "${program[@]}" render "$root/tests/matrix/one_of_everything.json" -o "$work/none.pfm" 2>&1 |
+    sed -n 's/.*this machine has //p' | tr -d ,)
+[[ $isas == *scalar* ]] || { echo "matrix.sh: the program does not say which instruction sets it has" >&2 && exit 2; }
+
 if [ "$full" = yes ]; then
     combinations=()
     for threads in 1 2 7; do for tile in 5 16 64; do for bvh in sah median; do
-        combinations+=("$threads $tile $bvh")
+        combinations+=("$threads $tile $bvh auto")
     done; done; done
+    for isa in $isas; do combinations+=("2 16 sah $isa"); done
 else
-    combinations=('1 16 sah' '2 5 median' '7 5 sah' '7 16 median' '1 64 median')
+    combinations=('1 16 sah auto' '2 5 median auto' '7 5 sah scalar' '7 16 median auto')
+    for isa in $isas; do combinations+=("1 64 median $isa"); done
 fi
 
 # render OUTPUT SCENE ARGUMENT...: leaves the JSON statistics in $work/json; on failure says why and returns its status.
@@ -65,19 +72,20 @@ crop_of() {
 
 # One case; prints what is wrong and returns 1, or leaves the hash in $hash.
 run_case() {
-    local name=$1 scene=$2 golden threads tile bvh seen most=0
+    local name=$1 scene=$2 golden threads tile bvh isa seen most=0
     shift 2
     golden=$(sed -n "s/^$name \([0-9a-f]\{32\}\)\$/\1/p" "$here/golden.txt")
     hash=
     for combination in "${combinations[@]}"; do
-        read -r threads tile bvh <<<"$combination"
-        render "$work/picture.pfm" "$scene" "$@" --threads "$threads" --tile-size "$tile" --bvh "$bvh" || return 1
+        read -r threads tile bvh isa <<<"$combination"
+        render "$work/picture.pfm" "$scene" "$@" --threads "$threads" --tile-size "$tile" --bvh "$bvh" \
+            --isa "$isa" || return 1
         seen=$(json_text hash)
         [[ $seen =~ ^[0-9a-f]{32}$ ]] || { echo "    no hash in the statistics" && return 1; }
         [ -n "$hash" ] || hash=$seen
         [ "$update" = yes ] || hash=$golden
         if [ "$seen" != "$hash" ]; then
-            echo "    $seen instead of ${hash:-a hash in golden.txt}: $threads threads, tile size $tile, $bvh"
+            echo "    $seen instead of ${hash:-a hash in golden.txt}: $threads threads, tile size $tile, $bvh, $isa"
             return 1
         fi
         [ "$(json_number threads)" -le "$most" ] || most=$(json_number threads)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "scene/names.h"
+#include "base/names.h"
 #include "support/chi_square.h"
 #include "support/random.h"
 #include "support/support.h"

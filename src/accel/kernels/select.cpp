@@ -2,6 +2,8 @@
 #include <string>
 
 #include "accel/kernels/kernels.h"
+#include "base/names.h"
+#include "base/text.h"
 
 namespace steradian {
 
@@ -9,48 +11,33 @@ namespace {
 
 struct Entry {
     Isa isa;
-    const char* name;
-    const Kernels* kernels;  ///< nullptr on machines of another kind
+    const Kernels* kernels;
     bool supported;
 };
 
-/// Best first.
+/// Of this kind of machine, best first.
 std::vector<Entry> entries() {
 #if defined(__x86_64__)
-    const bool bits = __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-    const bool avx2 = __builtin_cpu_supports("avx2") && bits;
+    const bool avx2 =
+        __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
     const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
     const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
-    return {{Isa::avx512, "avx512", &kAvx512Kernels, avx512},
-            {Isa::avx2, "avx2", &kAvx2Kernels, avx2},
-            {Isa::sse4, "sse4", &kSse4Kernels, sse4},
-            {Isa::neon, "neon", nullptr, false},
-            {Isa::scalar, "scalar", &kScalarKernels, true}};
+    return {{Isa::avx512, &kAvx512Kernels, avx512},
+            {Isa::avx2, &kAvx2Kernels, avx2},
+            {Isa::sse4, &kSse4Kernels, sse4},
+            {Isa::scalar, &kScalarKernels, true}};
 #elif defined(__aarch64__)
-    return {{Isa::neon, "neon", &kNeonKernels, true},
-            {Isa::avx512, "avx512", nullptr, false},
-            {Isa::avx2, "avx2", nullptr, false},
-            {Isa::sse4, "sse4", nullptr, false},
-            {Isa::scalar, "scalar", &kScalarKernels, true}};
+    return {{Isa::neon, &kNeonKernels, true}, {Isa::scalar, &kScalarKernels, true}};
 #else
-    return {{Isa::avx512, "avx512", nullptr, false},
-            {Isa::avx2, "avx2", nullptr, false},
-            {Isa::sse4, "sse4", nullptr, false},
-            {Isa::neon, "neon", nullptr, false},
-            {Isa::scalar, "scalar", &kScalarKernels, true}};
+    return {{Isa::scalar, &kScalarKernels, true}};
 #endif
 }
 
-std::string names_of_supported() {
-    std::string names;
-    for (const Entry& e : entries())
-        if (e.supported) names += (names.empty() ? "" : ", ") + std::string(e.name);
-    return names;
-}
-
 Error unusable(const std::string& what) {
-    return {ErrorCode::usage, what, {}, {}, "this machine has " + names_of_supported()};
+    std::string names;
+    for (const Isa isa : supported_isas()) names += (names.empty() ? "" : ", ") + std::string(name_of(isa));
+    return make_error(ErrorCode::usage, what, "this machine has " + names);
 }
 
 }  // namespace
@@ -63,15 +50,17 @@ std::vector<Isa> supported_isas() {
 }
 
 Result<const Kernels*> select_kernels(Isa isa) {
-    const char* wanted = isa == Isa::automatic ? std::getenv("STERADIAN_ISA") : nullptr;
-    for (const Entry& e : entries()) {
-        const bool meant = wanted && *wanted ? std::string(wanted) == e.name : isa == Isa::automatic || isa == e.isa;
-        if (!meant) continue;
-        if (e.supported) return e.kernels;
-        if (wanted || isa != Isa::automatic)
-            return unusable("this machine does not have the instruction set " + std::string(e.name));
+    if (isa == Isa::automatic) {
+        const char* wanted = std::getenv("STERADIAN_ISA");
+        const std::optional<Isa> named = find_name<Isa>(wanted && *wanted ? wanted : name_of(Isa::automatic));
+        if (!named)
+            return unusable("the environment variable STERADIAN_ISA is '" + escape_for_display(wanted) +
+                            "', expected the name of an instruction set");
+        isa = *named == Isa::automatic ? supported_isas().front() : *named;
     }
-    return unusable("the environment variable STERADIAN_ISA names no instruction set: '" + std::string(wanted) + "'");
+    for (const Entry& e : entries())
+        if (e.isa == isa && e.supported) return e.kernels;
+    return unusable("this machine does not have the instruction set " + std::string(name_of(isa)));
 }
 
 }  // namespace steradian

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "scene/names.h"
+#include "base/names.h"
 
 namespace steradian::scene_json {
 

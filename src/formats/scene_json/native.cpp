@@ -1,6 +1,6 @@
 #include "formats/scene_json/native.h"
 
-#include "scene/names.h"
+#include "base/names.h"
 
 namespace steradian::scene_json {
 

@@ -20,6 +20,7 @@ inline constexpr std::array<std::string_view, 1> kIntegratorNames{"direct"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
 inline constexpr std::array<std::string_view, 2> kBuilderNames{"sah", "median"};
+inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "sse4", "avx2", "avx512", "neon"};
 }  // namespace detail
 
 template <>
@@ -37,6 +38,10 @@ constexpr std::span<const std::string_view> names_of<FilterKind>() noexcept {
 template <>
 constexpr std::span<const std::string_view> names_of<BvhBuilder>() noexcept {
     return detail::kBuilderNames;
+}
+template <>
+constexpr std::span<const std::string_view> names_of<Isa>() noexcept {
+    return detail::kIsaNames;
 }
 
 template <class Kind>
