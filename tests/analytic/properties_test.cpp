@@ -204,7 +204,7 @@ TEST(Samplers, AgreeInEveryPixel) {
             difference += kind == 0 ? mean : -mean;
         }
         noisy_pixels += variance > 0;
-        const double arithmetic = kArithmetic * sum[1][i] / n;
+        const double arithmetic = kRounding * sum[1][i] / n;
         EXPECT_LE(std::abs(difference), bound * std::sqrt(variance) + arithmetic)
             << "pixel " << i / 3 % 16 << ", " << i / 48 << " channel " << i % 3;
     }
