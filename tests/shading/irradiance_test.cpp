@@ -101,6 +101,18 @@ TEST(Irradiance, RectanglesAsPolygons) {
     }
 }
 
+TEST(Irradiance, SmallRectanglesFarAway) {
+    // L A cos θ cos θ' / d². The next term of the expansion about the centre is half²/6 (∂²/∂x² + ∂²/∂z²) of that, and
+    // either derivative is below 24 / d² of the value.
+    for (const float half : {1e-5f, 1e-4f, 1e-2f, 0.1f}) {
+        const World world(test::area_light("", Rectangle{{30, 20, 10}, {half, 0, 0}, {0, 0, half}}, {}).scene);
+        const double d2 = 1400, area = 4.0 * half * half;
+        EXPECT_NEAR(irradiance(world.shading, test::receiver({}, {0, 1, 0}), 16) / (area * 400 / (d2 * d2)), 1,
+                    1e-6 + 8 * half * half / d2)
+            << half;
+    }
+}
+
 TEST(Irradiance, CentredRectangleFormFactor) {
     // Howell's C-3, four times: X = half width / distance, Y = half depth / distance.
     const World world(test::area_light("", Rectangle{{0, 2, 0}, {1, 0, 0}, {0, 0, 0.5f}}, {}).scene);
