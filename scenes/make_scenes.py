@@ -112,33 +112,62 @@ def spheres():
                                   {"type": "environment", "path": "sun_sky.hdr", "rotation": -60, "light_samples": 4}))
 
 
+def direction(x, y, width, height):
+    """That of a texel's centre: the top row is +Y, the centre column -Z, a quarter turn to its right +X."""
+    theta, phi = math.pi * (y + 0.5) / height, 2 * math.pi * ((x + 0.5) / width - 0.5)
+    return math.sin(theta) * math.sin(phi), math.cos(theta), -math.sin(theta) * math.cos(phi)
+
+
 def sun_sky():
     """A clear sky by a simple gradient, brighter towards the sun and the horizon; the ground is a dull brown."""
-    width, height = 256, 128
     elevation = math.radians(38)
     sun = (0.0, math.sin(elevation), -math.cos(elevation))  # in the map's centre column
-    rows = bytearray()
-    for y in range(height):
-        theta = math.pi * (y + 0.5) / height
-        for x in range(width):
-            phi = 2 * math.pi * ((x + 0.5) / width - 0.5)  # 0: -Z, a quarter turn to the right: +X
-            d = (math.sin(theta) * math.sin(phi), math.cos(theta), -math.sin(theta) * math.cos(phi))
-            cosine = sum(a * b for a, b in zip(d, sun))
-            if d[1] >= 0:
-                haze = (1 - d[1]) ** 4
-                glow = 0.9 * max(cosine, 0) ** 12
-                color = [a + (b - a) * haze + g * glow
-                         for a, b, g in zip((0.16, 0.33, 0.75), (0.75, 0.85, 1.0), (1.0, 0.85, 0.6))]
-                if cosine > math.cos(math.radians(1.6)):
-                    color = [1400, 1250, 1000]
-            else:
-                color = [0.18, 0.16, 0.13]
-            rows += rgbe(color)
-    with open("sun_sky.hdr", "wb") as f:
+
+    def color(d):
+        cosine = sum(a * b for a, b in zip(d, sun))
+        if d[1] < 0:
+            return [0.18, 0.16, 0.13]
+        if cosine > math.cos(math.radians(1.6)):
+            return [1400, 1250, 1000]
+        haze = (1 - d[1]) ** 4
+        glow = 0.9 * max(cosine, 0) ** 12
+        return [a + (b - a) * haze + g * glow
+                for a, b, g in zip((0.16, 0.33, 0.75), (0.75, 0.85, 1.0), (1.0, 0.85, 0.6))]
+
+    write_hdr("sun_sky.hdr", color)
+
+
+def evening_sky():
+    """A low sun in the front left of the camera's back; opposite to it the sky turns from rose to blue."""
+    sun = (-0.74, 0.38, 0.55)
+    length = math.sqrt(sum(x * x for x in sun))
+    # Colours at heights above the horizon (the sine of the elevation), joined by straight lines.
+    steps = [(0.0, (1.5, 0.86, 0.5)), (0.035, (1.25, 0.74, 0.5)), (0.08, (0.85, 0.56, 0.52)), (0.15, (0.46, 0.44, 0.58)),
+             (0.3, (0.22, 0.32, 0.58)), (1.0, (0.08, 0.17, 0.42))]
+
+    def color(d):
+        cosine = sum(a * b for a, b in zip(d, sun)) / length
+        if cosine > math.cos(math.radians(1.8)):
+            return [1500, 1150, 720]
+        height = max(d[1], 0)  # the far shore is lost in the haze
+        for (h0, c0), (h1, c1) in zip(steps, steps[1:]):
+            if height <= h1:
+                w = (height - h0) / (h1 - h0)
+                sky = [a + (b - a) * w for a, b in zip(c0, c1)]
+                break
+        glow = 1.6 * max(cosine, 0) ** 10
+        return [a + glow * g for a, g in zip(sky, (1.0, 0.72, 0.4))]
+
+    write_hdr("evening_sky.hdr", color)
+
+
+def write_hdr(path, color, width=256, height=128):
+    """color(direction) for each texel, as Radiance HDR."""
+    with open(path, "wb") as f:
         f.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width))
         for y in range(height):
             f.write(bytes([2, 2, width >> 8, width & 255]))
-            row = rows[y * width * 4:(y + 1) * width * 4]
+            row = b"".join(rgbe(color(direction(x, y, width, height))) for x in range(width))
             for c in range(4):
                 f.write(run_lengths(row[c::4]))
 
@@ -216,43 +245,51 @@ def knot(path, segments=256, sides=24, radius=0.17):
 
 
 def hero():
-    """A golden knot, glass and mirror balls and a curved stair of one shared box, under the sky with a sun."""
-    colors = {"clay": [0.62, 0.22, 0.12], "sand": [0.75, 0.6, 0.4], "moss": [0.25, 0.4, 0.16],
-              "sea": [0.1, 0.3, 0.5], "plum": [0.35, 0.12, 0.3]}
+    """A golden knot on a tiled stage, glass and mirror balls, and a spiral of one shared box, in a calm lake at evening."""
+    def hue(t):
+        """From terracotta over sand and sage to deep blue."""
+        stops = [(0.66, 0.19, 0.1), (0.78, 0.45, 0.18), (0.72, 0.62, 0.38), (0.26, 0.46, 0.36), (0.08, 0.28, 0.48), (0.2, 0.12, 0.38)]
+        i = min(int(t * (len(stops) - 1)), len(stops) - 2)
+        w = t * (len(stops) - 1) - i
+        return [round(a + (b - a) * w, 3) for a, b in zip(stops[i], stops[i + 1])]
+
+    count = 30
+    materials = {f"slab{i}": {"type": "diffuse", "reflectance": hue(i / (count - 1))} for i in range(count)}
     objects = [
-        {"type": "rectangle", "center": [0, 0, 0], "half_u": [150, 0, 0], "half_v": [0, 0, -150], "material": "floor"},
+        {"type": "rectangle", "center": [0, 0, 0], "half_u": [4000, 0, 0], "half_v": [0, 0, -4000], "material": "lake"},
+        {"type": "disk", "center": [0, 0.004, 0.3], "normal": [0, 1, 0], "radius": 1.8, "material": "stage"},
         {"type": "mesh", "path": "knot.ply", "material": "gold",
          "transform": [{"rotate": {"axis": [1, 0, 0], "angle": 62}}, {"rotate": {"axis": [0, 1, 0], "angle": -20}},
-                       {"translate": [0, 0.86, 0]}]},
-        {"type": "sphere", "center": [-1.15, 0.45, 0.75], "radius": 0.45, "material": "glass"},
-        {"type": "sphere", "center": [1.2, 0.38, 0.7], "radius": 0.38, "material": "mirror"},
-        {"type": "sphere", "center": [0.35, 0.16, 1.35], "radius": 0.16, "material": "clay"},
-        {"type": "sphere", "center": [-0.3, 0.12, 1.5], "radius": 0.12, "material": "sea"},
-        {"type": "sphere", "center": [0.05, 0.1, 1.75], "radius": 0.1, "material": "moss"},
+                       {"translate": [0, 0.875, 0]}]},
+        {"type": "sphere", "center": [-1.02, 0.374, 0.95], "radius": 0.37, "material": "glass"},
+        {"type": "sphere", "center": [1.04, 0.334, 0.85], "radius": 0.33, "material": "mirror"},
+        {"type": "sphere", "center": [0.38, 0.154, 1.4], "radius": 0.15, "material": "slab0"},
+        {"type": "sphere", "center": [-0.28, 0.114, 1.5], "radius": 0.11, "material": "slab24"},
+        {"type": "sphere", "center": [0.06, 0.084, 1.72], "radius": 0.08, "material": "slab13"},
     ]
-    names = list(colors)
-    for i in range(27):
-        angle = 78 - 6 * i
-        objects.append({"type": "instance", "shape": "box", "material": names[i % len(names)], "transform": [
-            {"translate": [-0.5, 0, 0.5]}, {"scale": [0.22, round(0.15 + 0.065 * i, 3), 0.5]}, {"translate": [0, 0, -2.4]},
-            {"rotate": {"axis": [0, 1, 0], "angle": angle}}]})
+    for i in range(count):
+        t = i / (count - 1)
+        objects.append({"type": "instance", "shape": "box", "material": f"slab{i}", "transform": [
+            {"translate": [-0.5, 0, 0.5]}, {"scale": [0.2, round(0.12 + 1.85 * t ** 1.3, 3), 0.5]},
+            {"translate": [0, 0, round(-2.6 - 0.2 * t, 3)]}, {"rotate": {"axis": [0, 1, 0], "angle": round(72 - 140 * t, 2)}}]})
     dump("hero.json", {
         "$schema": "../docs/scene.schema.json", "version": 1,
         "comment": "What the program can do: instances, a mesh, glass, mirrors, textures, a sky with a sun.",
         "render": {"integrator": "direct", "max_depth": 12, "spp": 256},
         "film": {"resolution": [960, 540]},
-        "camera": {"position": [0, 1.55, 5.6], "look_at": [0, 0.72, 0], "vertical_fov": 30},
-        "textures": {"tiles": {"type": "checkerboard", "color0": [0.72, 0.7, 0.66], "color1": [0.22, 0.24, 0.27], "scale": [430, 430]}},
+        "camera": {"position": [0, 1.5, 5.9], "look_at": [0, 0.72, 0], "vertical_fov": 29},
+        "textures": {"tiles": {"type": "checkerboard", "color0": [0.8, 0.77, 0.7], "color1": [0.3, 0.29, 0.3], "scale": [12, 12]}},
         "materials": {
-            "floor": {"type": "diffuse", "reflectance": "tiles"},
+            "lake": {"type": "mirror", "reflectance": [0.62, 0.66, 0.7]},
+            "stage": {"type": "diffuse", "reflectance": "tiles"},
             "gold": {"type": "mirror", "reflectance": [1.0, 0.76, 0.33]},
             "mirror": {"type": "mirror", "reflectance": [0.92, 0.93, 0.94]},
             "glass": {"type": "glass", "eta": 1.5},
-            **{name: {"type": "diffuse", "reflectance": color} for name, color in colors.items()},
+            **materials,
         },
         "shapes": {"box": BOX},
         "objects": objects,
-        "lights": [{"type": "environment", "path": "sun_sky.hdr", "rotation": 125, "light_samples": 2}],
+        "lights": [{"type": "environment", "path": "evening_sky.hdr", "light_samples": 2}],
     })
 
 
@@ -260,5 +297,6 @@ if __name__ == "__main__":
     cornell()
     spheres()
     sun_sky()
+    evening_sky()
     knot("knot.ply")
     hero()

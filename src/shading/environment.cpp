@@ -19,9 +19,6 @@ Rgb light_texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y)
     return {max_of(c.r, 0.0f), max_of(c.g, 0.0f), max_of(c.b, 0.0f)};
 }
 
-/// What directions are chosen by: luminance, but never so little that a saturated blue is overlooked.
-double importance(Rgb c) { return max_of(static_cast<double>(luminance(c)), 0.05 * max_component(c)); }
-
 /// The mean over a texel of the interpolation between its own value and its neighbours'.
 double tent_mean(double before, double own, double after) { return 0.125 * before + 0.75 * own + 0.125 * after; }
 
@@ -67,13 +64,13 @@ void EnvironmentTable::tabulate(const RawImage& image) {
     cells_.resize(w * h);
     rows_.resize(h);
     parallel_for(h, 16, [&](size_t begin, size_t end) {
-        // Importance of the row above, the row itself and the row below, averaged along the row.
+        // Luminance of the row above, the row itself and the row below, averaged along the row.
         std::array<std::vector<double>, 3> window;
         std::vector<double> raw(w);
         const auto read_row = [&](size_t y, std::vector<double>& out) {
             for (size_t x = 0; x < w; ++x)
-                raw[x] = importance(
-                    light_texel(image, color_space_, static_cast<uint32_t>(x), static_cast<uint32_t>(y)) * scale_);
+                raw[x] = static_cast<double>(luminance(
+                    light_texel(image, color_space_, static_cast<uint32_t>(x), static_cast<uint32_t>(y)) * scale_));
             out.resize(w);
             for (size_t x = 0; x < w; ++x)
                 out[x] = tent_mean(raw[x > 0 ? x - 1 : w - 1], raw[x], raw[x + 1 < w ? x + 1 : 0]);

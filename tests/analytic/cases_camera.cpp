@@ -109,6 +109,9 @@ void add_filters(std::vector<Case>& out) {
                 mean += filtered([&](double v) { return row.cdf(8.25 + (y + 0.5 + v - 2) / 4 - (x + 0.5)); }, row.cdf,
                                  row.radius) /
                         4;
+            // A column that one sample in more than ten thousand tells from black or white has no standard error yet.
+            const double from_plain = std::abs(mean - std::round(mean));
+            if (from_plain > 1e-12 && from_plain < 1e-4) continue;
             c.expected.push_back({x, 0, x + 1, 4, mean, false});
         }
         out.push_back(c);

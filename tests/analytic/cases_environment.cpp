@@ -106,6 +106,15 @@ void add_furnaces(std::vector<Case>& out) {
             "C03_white_furnace_diffuse_sphere");
     furnace("furnace_mirror_sphere", "1", mirror(), "C04_white_furnace_mirror_sphere");
     furnace("furnace_diffuse_two_sided_sphere", "1", diffuse(1.0, true), "");
+    const SceneText below = SceneText()
+                                .look({0.3, -2, 0.5}, {0, 0, 0}, 20)
+                                .size(16, 16)
+                                .material("it", diffuse(0.5, true))
+                                .object(ground({0, 0, 0}, 20, 20, "it"))
+                                .light(environment(1.0));
+    Case back = whole("furnace_diffuse_two_sided_back", "ρ L: the side that is seen is lit", below, 0.5);
+    back.expected[0].every_pixel = true;
+    out.push_back(back);
 }
 
 /// Blocks of colour around the six axes: −Z in the middle column, +X a quarter to its right, +Y on top.

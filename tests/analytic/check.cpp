@@ -130,7 +130,7 @@ Judgement judge_statistics(const Case& c) {
             const Estimate e = all[i][static_cast<size_t>(channel)];
             const double want = c.expected[i].value[channel], base = reference(c, want),
                          error = std::abs(e.mean - want);
-            const double deviation = error <= kArithmetic * base ? 0 : error / e.standard_error;
+            const double deviation = error <= kRounding * base ? 0 : error / e.standard_error;
             out.worst_error = std::max(out.worst_error, error / base);
             out.worst_deviation = std::max(out.worst_deviation, deviation);
             if (!(deviation <= kDeviations) || !(error <= std::max(1e-3, c.tolerance) * base))

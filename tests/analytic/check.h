@@ -5,8 +5,8 @@
 // Stochastic: pictures of 16 independent seeds (32 in the long tier) give a mean and its standard error. The samples
 // per pixel are raised until the standard error is at most 0.025 % of the value, each round with fresh seeds, so that
 // the stop does not depend on the error that is judged. Then the error must be within four standard errors and within
-// the larger of 0.1 % and the case's own tolerance. Errors below the bound for zero variance (1e-5) are arithmetic and
-// pass.
+// the larger of 0.1 % and the case's own tolerance. Where low-discrepancy samples leave less than that, rounding to
+// float remains: errors below 1e-6 pass, which is 16 roundings of 2^-24.
 #pragma once
 
 #include <memory>
@@ -53,7 +53,7 @@ struct Judgement {
 };
 Judgement judge(const Case& c);
 
-inline constexpr double kArithmetic = 1e-5;  ///< relative error of what has no variance
+inline constexpr double kRounding = 1e-6;  ///< relative error that no variance has to explain
 inline constexpr double kDeviations = 4;
 
 }  // namespace steradian::analytic

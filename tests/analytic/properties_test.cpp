@@ -115,6 +115,29 @@ TEST(LightSamples, KeepTheMeanAndLowerTheVariance) {
     }
 }
 
+double log_variance(const SceneText& text, uint32_t seeds, uint64_t samples) {
+    return 2 *
+           std::log(
+               estimate(means(PreparedCase(text.str(), {}), seeds, samples, SamplerKind::independent)).standard_error);
+}
+
+// Every number is used once: the light samples of different camera samples, and of different lights, are independent of
+// each other. Logarithms of ratios of two sample variances, as above.
+TEST(LightSamples, ShareNoNumbers) {
+    const uint32_t seeds = test::by_tier(512u, 2048u);
+    const double spread = 4 * std::sqrt(4.0 / (seeds - 1));
+    const auto lamp = [](double x, int n) {
+        return disk({x, 2, 0}, {0, -1, 0}, 0.34, "black").set("light", emission(4).set("light_samples", n));
+    };
+    const auto floor = [] { return floor_scene({-0.6, 0.9, 0.9}); };
+    const double near = log_variance(floor().object(lamp(1.5, 1)), seeds, 1);
+    EXPECT_NEAR(near - log_variance(floor().object(lamp(1.5, 4)), seeds, 4), std::log(16), spread);
+    // Two lamps side by side, whose contributions rise and fall together with the position on each.
+    const double far = log_variance(floor().object(lamp(2.2, 1)), seeds, 1);
+    const double both = log_variance(floor().object(lamp(1.5, 1)).object(lamp(2.2, 1)), seeds, 1);
+    EXPECT_NEAR(both - std::log(std::exp(near) + std::exp(far)), 0, spread);
+}
+
 TEST(LightSamples, OfTheEnvironmentKeepTheMean) {
     for (const int n : {1, 3, 8}) {
         const Object sky = environment({1, 2, 0.5}).set("light_samples", n);
@@ -181,7 +204,7 @@ TEST(Samplers, AgreeInEveryPixel) {
             difference += kind == 0 ? mean : -mean;
         }
         noisy_pixels += variance > 0;
-        const double arithmetic = kArithmetic * sum[1][i] / n;
+        const double arithmetic = kRounding * sum[1][i] / n;
         EXPECT_LE(std::abs(difference), bound * std::sqrt(variance) + arithmetic)
             << "pixel " << i / 3 % 16 << ", " << i / 48 << " channel " << i % 3;
     }

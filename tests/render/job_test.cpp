@@ -135,6 +135,21 @@ TEST(Job, CancelKeepsWhatIsDone) {
     for (const float v : result->image.pixels) ASSERT_TRUE(std::isfinite(v));
 }
 
+// A job that is stopped has a whole picture: no tile gets its next block before every tile has got its last one.
+TEST(Job, TheWholeFrameAdvancesTogether) {
+    RenderSettings settings = small_settings();
+    settings.samples_per_pixel = kMaxSamplesPerPixel;
+    auto job = RenderJob::start(prepared(test::everything_scene()), settings, {1, 16, BvhBuilder::sah, 64});
+    ASSERT_TRUE(job.ok());
+    const uint64_t frame = uint64_t(settings.width) * settings.height * 64;
+    while ((*job)->progress().samples_done < 3 * frame / 2) std::this_thread::yield();
+    (*job)->cancel();
+    auto result = (*job)->take();
+    ASSERT_TRUE(result.ok());
+    EXPECT_GE(result->min_samples, 64u);
+    EXPECT_LE(result->max_samples - result->min_samples, 64u);
+}
+
 TEST(Job, CancelDoesNotWaitForThousandsOfLightSamples) {
     Scene scene = test::everything_scene();
     std::get<AreaLight>(scene.lights[0]).samples = kMaxLightSamples;

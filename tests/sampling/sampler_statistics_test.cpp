@@ -176,6 +176,22 @@ TEST(SamplerStatistics, GroupsAreUncorrelatedWhateverTheSample) {
             }
 }
 
+// Light samples of a long render have indices beyond 2^32, where the Sobol sequence has come to its end.
+TEST(SamplerStatistics, SamplesBeyondTheSequenceAreNew) {
+    const uint32_t side = by_tier(128u, 1024u);
+    for (const SamplerKind kind : kKinds)
+        for (const uint64_t round : {1u, 2u, 1000u})
+            for (uint32_t d = 0; d < 8; ++d) {
+                const Sampler sampler(kind, 5);
+                Correlation correlation;
+                for (uint32_t y = 0; y < side; ++y)
+                    for (uint32_t x = 0; x < side; ++x)
+                        correlation.add(sampler.get_1d(sampler.key(x, y, 7), d),
+                                        sampler.get_1d(sampler.key(x, y, 7 + (round << 32)), d));
+                EXPECT_LT(std::fabs(correlation.deviation()), kLargestDeviation) << name(kind) << round << ", " << d;
+            }
+}
+
 TEST(SamplerStatistics, IndependentSamplesAreUncorrelated) {
     const uint32_t side = by_tier(128u, 1024u);
     const Sampler sampler(SamplerKind::independent, 5);

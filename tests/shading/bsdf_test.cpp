@@ -130,6 +130,29 @@ TEST(Bsdf, Furnace) {
     }
 }
 
+/// A direction on which the two normals disagree is treated as if the surface were flat.
+TEST(Bsdf, SpecularLobesTakeTheGeometricNormalWhereTheShadingNormalFacesAway) {
+    Random random(14);
+    int compared = 0;
+    for (const Normals& normals : normal_pairs()) {
+        const std::vector<Bsdf> bent = all_bsdfs(normals.ng, normals.ns), flat = all_bsdfs(normals.ng, normals.ng);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3 wo = static_cast<Vec3>(random.direction());
+            if (dot(Vec3d(wo), Vec3d(normals.ng)) * dot(Vec3d(wo), Vec3d(normals.ns)) >= 0) continue;
+            for (size_t k = 0; k < bent.size(); ++k) {
+                if (!is_specular(bent[k])) continue;
+                const float choice = random.uniform2().x;
+                const auto a = sample(bent[k], wo, choice, {0.5f, 0.5f}), b = sample(flat[k], wo, choice, {0.5f, 0.5f});
+                ASSERT_TRUE(a && b);
+                EXPECT_EQ(a->wi, b->wi);
+                EXPECT_EQ(a->weight, b->weight);
+                ++compared;
+            }
+        }
+    }
+    EXPECT_GT(compared, 1000);
+}
+
 TEST(Bsdf, DiffuseIsReciprocalAndHasSides) {
     Random random(4);
     for (const Normals& normals : normal_pairs())
