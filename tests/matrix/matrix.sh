@@ -29,7 +29,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # The instruction sets that the program can use here, as it says itself when asked for one that does not exist.
-isas=$(STERADIAN_ISA=? "${program[@]}" render "$root/tests/matrix/one_of_everything.json" -o "$work/none.pfm" 2>&1 |
+isas=$({ STERADIAN_ISA=? "${program[@]}" render "$root/tests/matrix/one_of_everything.json" -o "$work/none.pfm" || true; } 2>&1 |
     sed -n 's/.*this machine has //p' | tr -d ,)
 [[ $isas == *scalar* ]] || { echo "matrix.sh: the program does not say which instruction sets it has" >&2 && exit 2; }
 
