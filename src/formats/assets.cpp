@@ -43,6 +43,11 @@ std::string identity(const std::string& path) {
 
 }  // namespace
 
+void warn_about_reflectance(Diagnostics& diagnostics, Rgb reflectance, SourceLocation where) {
+    if (max_component(reflectance) > 1)
+        diagnostics.warn("a reflectance above 1 adds energy: surfaces like this do not exist", std::move(where));
+}
+
 Status Assets::check_inside(const std::string& path) const {
     std::error_code error;
     const auto root = std::filesystem::weakly_canonical(base_folder_.empty() ? "." : base_folder_, error);
@@ -109,6 +114,7 @@ Result<size_t> Assets::load_model(std::string_view named) {
         const MeshId mesh = add_mesh(std::move(part.mesh), part.name.empty() ? std::string(named) : part.name);
         model.parts.push_back({add_shape(mesh, part.name), part.material, part.name});
     }
+    model.dropped_faces = file->dropped_faces;
     model.materials = std::move(file->materials);
     model.made.resize(model.materials.size());
     models_.push_back(std::move(model));
@@ -153,16 +159,15 @@ Result<MaterialId> Assets::file_material(Model& model, int number) {
 /// diffuse and two-sided, since the orientation of faces in OBJ files is not dependable.
 Result<MaterialId> Assets::convert(const MeshMaterial& from) {
     const bool glass = from.illum == 4 || from.illum == 6 || from.illum == 7 || from.illum == 9 || from.dissolve < 0.5f;
-    if (glass) {
-        const Rgb tint = max_component(from.transmission) > 0 ? from.transmission : Rgb{1, 1, 1};
-        return add_material(GlassMaterial{from.ior, {1, 1, 1}, tint}, from.name);
-    }
-    if (from.illum == 3)
-        return add_material(MirrorMaterial{max_component(from.specular) > 0 ? from.specular : Rgb{1, 1, 1}}, from.name);
+    const auto tint_or_white = [&](Rgb tint) {
+        warn_about_reflectance(loaded_.diagnostics, tint, from.where);
+        return max_component(tint) > 0 ? tint : Rgb{1, 1, 1};
+    };
+    if (glass) return add_material(GlassMaterial{from.ior, {1, 1, 1}, tint_or_white(from.transmission)}, from.name);
+    if (from.illum == 3) return add_material(MirrorMaterial{tint_or_white(from.specular)}, from.name);
     if (from.dissolve < 1) loaded_.diagnostics.warn("partly transparent materials (d, Tr) are rendered opaque");
     if (from.diffuse_map.empty()) {
-        if (max_component(from.diffuse) > 1)
-            loaded_.diagnostics.warn("a material's Kd above 1 adds energy: surfaces like this do not exist");
+        warn_about_reflectance(loaded_.diagnostics, from.diffuse, from.where);
         return add_diffuse(from.diffuse, true, from.name);
     }
 

@@ -22,6 +22,7 @@ struct Model {
     std::vector<Part> parts;
     std::vector<MeshMaterial> materials;
     std::vector<std::optional<MaterialId>> made;  ///< scene materials made of `materials` so far
+    uint64_t dropped_faces = 0;                   ///< whose coordinates are not usable
 };
 
 /// Where an instance's look comes from.
@@ -37,6 +38,9 @@ struct Placement {
 struct InstanceRange {
     uint32_t first = 0, count = 0;
 };
+
+/// Warns when a surface would reflect more than it receives.
+void warn_about_reflectance(Diagnostics& diagnostics, Rgb reflectance, SourceLocation where);
 
 /// Fills a scene. Errors about a file as a whole (missing, refused path) have no line, so that the caller can point at
 /// the place that named the file.

@@ -70,6 +70,14 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
     return loaded;
 }
 
+std::string nothing_to_render(const Model& model) {
+    const std::string faces = std::to_string(model.dropped_faces);
+    if (model.dropped_faces == 0) return "the model has no faces, there is nothing to render";
+    return "there is nothing to render: " +
+           (model.dropped_faces == 1 ? std::string("the only face has") : "all " + faces + " faces have") +
+           " coordinates that are not finite or beyond 1e15";
+}
+
 Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& options) {
     const size_t slash = path.find_last_of('/');
     LoadedScene loaded;
@@ -82,9 +90,7 @@ Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& 
     if (!model) return about_the_model(model.error());
     const auto placed = assets.place(*model, {});
     if (!placed) return about_the_model(placed.error());
-    if (placed->count == 0)
-        return Error{
-            ErrorCode::bad_input, "the model has no faces, there is nothing to render", {path, 0, 0, {}}, {}, {}};
+    if (placed->count == 0) return about_file(path, ErrorCode::bad_input, nothing_to_render(assets.model(*model)));
     add_studio(loaded, assets);
     return loaded;
 }

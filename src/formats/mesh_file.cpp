@@ -8,6 +8,13 @@
 
 namespace steradian {
 
+void note_dropped(MeshFile& file, const std::string& name, uint64_t faces) {
+    file.dropped_faces = faces;
+    if (faces)
+        file.diagnostics.warn("faces with coordinates that are not finite or beyond 1e15 were dropped",
+                              {name, 0, 0, {}}, faces);
+}
+
 Result<MeshFile> load_mesh_file(const std::string& path, const LoadOptions& options) {
     static constexpr std::array<std::string_view, 2> kExtensions{".obj", ".ply"};
     const std::string extension = extension_of(path);

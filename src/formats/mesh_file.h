@@ -13,6 +13,7 @@ namespace steradian {
 /// What an MTL file can say that we use. Paths are resolved against the MTL file's folder.
 struct MeshMaterial {
     std::string name;
+    SourceLocation where;                    ///< of the name
     Rgb diffuse{0.6f, 0.6f, 0.6f};           ///< Kd, linear
     std::string diffuse_map;                 ///< map_Kd; empty: none
     SourceLocation diffuse_map_where;        ///< of that name, for messages about the file
@@ -38,7 +39,11 @@ struct MeshFile {
     std::vector<MeshMaterial> materials;  ///< those that parts use, in order of first use
     Diagnostics diagnostics;
     std::vector<std::string> libraries;  ///< the MTL files that were read
+    uint64_t dropped_faces = 0;          ///< whose coordinates are not usable (see usable_position)
 };
+
+/// Counts faces as dropped and warns about them; nothing when there are none.
+void note_dropped(MeshFile& file, const std::string& name, uint64_t faces);
 
 /// By extension, .obj or .ply. UVs are flipped to Steradian's convention (v downwards).
 Result<MeshFile> load_mesh_file(const std::string& path, const LoadOptions& options = {});

@@ -227,6 +227,37 @@ TEST_F(SceneFiles, WithoutFacesThereIsNothingToLight) {
     EXPECT_NE(model.error().message.find("no faces"), std::string::npos);
 }
 
+TEST_F(SceneFiles, AModelWithoutUsableVerticesSaysWhyThereIsNothing) {
+    spit(folder_.path() / "nan.obj", "v nan 0 0\nv 1 nan 0\nv 0 1 inf\nf 1 2 3\nf 3 2 1\n");
+    spit(folder_.path() / "far.ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "1e16 0 0\n0 1e16 0\n0 0 1e16\n3 0 1 2\n");
+    const auto message = [&](const char* name) { return load_scene(folder_.file(name)).error().message; };
+    EXPECT_EQ(message("nan.obj"),
+              "there is nothing to render: all 2 faces have coordinates that are not finite or beyond 1e15");
+    EXPECT_EQ(message("far.ply"),
+              "there is nothing to render: the only face has coordinates that are not finite or beyond 1e15");
+}
+
+TEST_F(SceneFiles, ReflectancesOfMtlAboveOneAreCountedWithThePlaceOfTheFirst) {
+    spit(folder_.path() / "bright.mtl",
+         "newmtl white\nKd 1 1 1\nnewmtl bright\nKd 1 1.5 1\nnewmtl mirror\nillum 3\nKs 2 2 2\nnewmtl glass\nillum 7\n"
+         "Tf 3\nnewmtl unused\nKd 4 4 4\nnewmtl dark\nKd -1 0 0\n");
+    std::string text = "mtllib bright.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (const char* name : {"white", "bright", "mirror", "glass", "dark"})
+        text += "usemtl " + std::string(name) + "\nf 1 2 3\n";
+    spit(folder_.path() / "bright.obj", text);
+    const LoadedScene loaded = load_scene(folder_.file("bright.obj")).value();
+    ASSERT_EQ(loaded.diagnostics.warnings().size(), 2u);
+    const Warning& clamped = loaded.diagnostics.warnings()[0];
+    EXPECT_NE(clamped.message.find("'Kd' is out of range and was clamped"), std::string::npos) << clamped.message;
+    const Warning& above = loaded.diagnostics.warnings()[1];
+    EXPECT_NE(above.message.find("reflectance above 1"), std::string::npos) << above.message;
+    EXPECT_EQ(above.count, 3u);
+    EXPECT_EQ(above.where.str(), folder_.file("bright.mtl") + ":3:8");
+}
+
 /// A model of eight vertices, of which the last pulls the middle of the picture aside.
 std::string framed_model(double scale) {
     std::string text;

@@ -9,6 +9,7 @@
 #include "formats/mesh/parse_failure.h"
 #include "formats/mesh/polygon.h"
 #include "math/elementary.h"
+#include "math/ray.h"
 #include "math/vector.h"
 
 namespace steradian::obj {
@@ -175,7 +176,7 @@ std::vector<FaceList> sort_faces(const Records& records, BuildCounts& counts) {
             const Face face{corners, size, run.state.smoothing.value_or(0)};
             corners += size;
             bool finite = true;
-            for (const Corner& corner : face.all()) finite &= is_finite(position_of(records, corner));
+            for (const Corner& corner : face.all()) finite &= usable_position(position_of(records, corner));
             if (finite)
                 faces.push_back(face);
             else

@@ -30,11 +30,11 @@ struct FaceList {
 
 /// What the lists leave out or had to bend.
 struct BuildCounts {
-    uint64_t not_finite = 0;  ///< faces dropped because a coordinate is not finite
+    uint64_t not_finite = 0;  ///< faces dropped because a coordinate is not usable (see usable_position)
     uint64_t fans = 0;        ///< polygons that cross themselves or are too intricate, cut as fans
 };
 
-/// Faces by material, in the order of their first use; those that use a position which is not finite are dropped.
+/// Faces by material, in the order of their first use; those that use a position that is not usable are dropped.
 std::vector<FaceList> sort_faces(const Records& records, BuildCounts& counts);
 
 /// One mesh for each list. Throws ParseFailure (resources) when indices do not fit into 32 bits.

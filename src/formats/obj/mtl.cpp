@@ -126,6 +126,7 @@ void LibraryReader::begin_material(std::string_view keyword, Words& words) {
     dissolve_ = transparency_ = std::nullopt;
     current_name_ = words.rest();
     current_.name = std::string(current_name_);
+    current_.where.byte = offset_of(current_name_.data());
     open_ = true;
     repeated_ = !names_.insert(current_name_).second;
     if (repeated_) notes.add(Remark::duplicate, current_name_, offset_of(keyword.data()));
@@ -278,17 +279,18 @@ void LibraryReader::read() {
     end_material();
 }
 
-/// Lines and columns for the byte offsets, in one walk: materials come in the order of the file.
-void locate_maps(std::string_view text, const std::string& name, std::vector<MeshMaterial>& materials) {
+/// Lines and columns for the byte offsets, in one walk: they come in the order of the file.
+void locate(std::string_view text, const std::string& name, std::vector<MeshMaterial>& materials) {
     uint32_t line = 1;
     size_t at = 0, begin = 0;
-    for (MeshMaterial& material : materials) {
-        if (!material.diffuse_map_where.byte) continue;
-        const size_t offset = *material.diffuse_map_where.byte;
-        for (; at < offset; ++at)
-            if (text[at] == '\n') ++line, begin = at + 1;
-        material.diffuse_map_where = {name, line, static_cast<uint32_t>(offset - begin + 1), {}};
-    }
+    for (MeshMaterial& material : materials)
+        for (SourceLocation* where : {&material.where, &material.diffuse_map_where}) {
+            if (!where->byte) continue;
+            const size_t offset = *where->byte;
+            for (; at < offset; ++at)
+                if (text[at] == '\n') ++line, begin = at + 1;
+            *where = {name, line, static_cast<uint32_t>(offset - begin + 1), {}};
+        }
 }
 
 }  // namespace
@@ -303,7 +305,7 @@ Result<MaterialLibrary> parse_mtl(std::string_view text, const std::string& name
             library.diagnostics.warn(describe(note.kind, note.word), text_location(text, name, note.offset),
                                      note.count);
         library.materials = std::move(reader.materials);
-        locate_maps(text, name, library.materials);
+        locate(text, name, library.materials);
         return library;
     } catch (const ParseFailure& failure) {
         return text_error(text, name, failure);

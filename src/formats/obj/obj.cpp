@@ -181,9 +181,7 @@ MeshFile read_obj(std::string_view text, const std::string& name, const std::str
     }
     file.materials = std::move(materials.used);
     file.libraries = std::move(materials.read);
-    if (counts.not_finite)
-        file.diagnostics.warn("faces with coordinates that are not finite were dropped", {name, 0, 0, {}},
-                              counts.not_finite);
+    note_dropped(file, name, counts.not_finite);
     if (counts.fans)
         file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
                               counts.fans);

@@ -10,6 +10,7 @@
 #include "formats/mesh_file.h"
 #include "formats/ply/header.h"
 #include "formats/ply/source.h"
+#include "math/ray.h"
 #include "math/vector.h"
 
 namespace steradian {
@@ -259,11 +260,11 @@ struct BuildCounts {
     uint64_t not_finite = 0, fans = 0;
 };
 
-/// Polygons to triangles; those that use a position which is not finite are dropped.
+/// Polygons to triangles; those that use a position that is not usable are dropped.
 BuildCounts triangulate(Contents& contents) {
     BuildCounts counts;
     Mesh& mesh = contents.mesh;
-    const bool finite = std::all_of(mesh.positions.begin(), mesh.positions.end(), [](Vec3 p) { return is_finite(p); });
+    const bool finite = std::all_of(mesh.positions.begin(), mesh.positions.end(), usable_position);
     const bool triangles = std::all_of(contents.sizes.begin(), contents.sizes.end(), [](uint32_t n) { return n == 3; });
     if (finite && triangles) {
         mesh.indices = std::move(contents.corners);
@@ -278,7 +279,7 @@ BuildCounts triangulate(Contents& contents) {
         begin += size;
         points.clear();
         for (const uint32_t corner : corners) points.push_back(mesh.positions[corner]);
-        if (!finite && !std::all_of(points.begin(), points.end(), [](Vec3 p) { return is_finite(p); })) {
+        if (!finite && !std::all_of(points.begin(), points.end(), usable_position)) {
             ++counts.not_finite;
             continue;
         }
@@ -288,7 +289,7 @@ BuildCounts triangulate(Contents& contents) {
     }
     // No triangle uses them any more, but later checks see every number of a scene.
     for (Vec3& p : mesh.positions)
-        if (!is_finite(p)) p = {0, 0, 0};
+        if (!usable_position(p)) p = {0, 0, 0};
     return counts;
 }
 
@@ -343,9 +344,7 @@ MeshFile read_ply(std::string_view data, const std::string& name, const Header& 
         file.diagnostics.warn("faces of fewer than three corners ignored",
                               location_of(data, name, text, contents.too_small_at), contents.too_small);
     const BuildCounts counts = triangulate(contents);
-    if (counts.not_finite)
-        file.diagnostics.warn("faces with coordinates that are not finite were dropped", {name, 0, 0, {}},
-                              counts.not_finite);
+    note_dropped(file, name, counts.not_finite);
     if (counts.fans)
         file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
                               counts.fans);

@@ -61,11 +61,6 @@ void check_camera(ObjectReader& camera, const PerspectiveCamera& result, std::st
                     "choose another direction, such as [0, 0, 1] when looking straight down");
 }
 
-void warn_about_reflectance(const Context& context, Rgb reflectance, size_t offset) {
-    if (max_component(reflectance) > 1)
-        context.warn("a reflectance above 1 adds energy: surfaces like this do not exist", offset);
-}
-
 NamedPath read_path(ObjectReader& reader) {
     const Value value = reader.require("path");
     return {json::read_string(reader.source(), value, "'path'"), value.offset()};

@@ -29,6 +29,9 @@ struct Context {
     void warn(std::string message, size_t offset) const {
         loaded.diagnostics.warn(std::move(message), source.where(offset));
     }
+    void warn_about_reflectance(Rgb reflectance, size_t offset) const {
+        steradian::warn_about_reflectance(loaded.diagnostics, reflectance, source.where(offset));
+    }
 };
 
 /// The closest of the names, or all of them while they are few.
@@ -77,9 +80,6 @@ inline constexpr double kInverseSphere = 0.0795774715459476678844;  ///< 1 / 4π
 /// A list of steps, applied in the order of the list; an object with one or more steps, applied in the order in which
 /// they stand in the file; or a matrix by itself. Fails where the result would be singular.
 Affine read_transform(const Source& source, Value value);
-
-/// Warns when a surface would reflect more than it receives.
-void warn_about_reflectance(const Context& context, Rgb reflectance, size_t offset);
 
 /// A file that the scene names, and the place to blame for it.
 struct NamedPath {

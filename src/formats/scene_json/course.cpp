@@ -203,7 +203,7 @@ MaterialId CourseLoader::read_material(Value value, const std::string& name) {
                     : assets_.add_texture(ConstantTexture{reader.color("color", json::kReflectance)}, name);
         if (const auto* constant =
                 std::get_if<ConstantTexture>(&context_.loaded.scene.textures[index(diffuse.reflectance)]))
-            warn_about_reflectance(context_, constant->value, value.offset());
+            context_.warn_about_reflectance(constant->value, value.offset());
         diffuse.two_sided = reader.boolean_or("twosided", false);
         material = diffuse;
     } else if (type == 1) {
@@ -213,8 +213,8 @@ MaterialId CourseLoader::read_material(Value value, const std::string& name) {
         glass.eta = reader.number_or("eta", 1.5f, kEta);
         glass.reflectance = reader.color_or("R", {1, 1, 1}, json::kReflectance);
         glass.transmittance = reader.color_or("T", {1, 1, 1}, json::kReflectance);
-        warn_about_reflectance(context_, glass.reflectance, value.offset());
-        warn_about_reflectance(context_, glass.transmittance, value.offset());
+        context_.warn_about_reflectance(glass.reflectance, value.offset());
+        context_.warn_about_reflectance(glass.transmittance, value.offset());
         material = glass;
     }
     reader.finish();

@@ -55,12 +55,12 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name) {
         checker.odd = reader.color_or("color1", checker.odd, json::kReflectance);
         checker.scale = reader.vec2_or("scale", checker.scale, kTextureScale);
         checker.offset = reader.vec2_or("offset", checker.offset, kTextureScale);
-        warn_about_reflectance(context_, checker.even, value.offset());
-        warn_about_reflectance(context_, checker.odd, value.offset());
+        context_.warn_about_reflectance(checker.even, value.offset());
+        context_.warn_about_reflectance(checker.odd, value.offset());
         texture = checker;
     }
     if (const auto* constant = std::get_if<ConstantTexture>(&texture))
-        warn_about_reflectance(context_, constant->value, value.offset());
+        context_.warn_about_reflectance(constant->value, value.offset());
     reader.finish();
     return assets_.add_texture(texture, name);
 }
@@ -90,7 +90,7 @@ TextureId NativeLoader::read_reflectance(ObjectReader& material) {
         source_.fail(value.offset(), "'reflectance' must be a colour, the name of a texture or a texture, got " +
                                          json::describe(value));
     const Rgb color = json::read_color(source_, value, "'reflectance'", json::kReflectance);
-    warn_about_reflectance(context_, color, value.offset());
+    context_.warn_about_reflectance(color, value.offset());
     return assets_.add_texture(ConstantTexture{color}, "");
 }
 
@@ -107,7 +107,7 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
     reader.require("type");
     const auto tint = [&](std::string_view key) {
         const Rgb color = reader.color_or(key, {1, 1, 1}, json::kReflectance);
-        warn_about_reflectance(context_, color, value.offset());
+        context_.warn_about_reflectance(color, value.offset());
         return color;
     };
     Material material;
