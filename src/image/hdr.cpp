@@ -135,7 +135,8 @@ Header parse_header(const Source& source) {
     }
     const size_t at = position;
     parse_resolution(source, next_line(source, position), at, header);
-    if (!(header.exposure > 0) || !std::isfinite(header.exposure))
+    // Its inverse multiplies floats.
+    if (!(header.exposure >= 0x1p-126) || !(header.exposure <= 0x1p126))
         source.fail("the product of all EXPOSURE= is out of range", at);
     header.end = position;
     return header;

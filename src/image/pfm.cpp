@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "image/codec.h"
+#include "math/vector.h"
 
 namespace steradian::codec {
 namespace {
@@ -46,8 +47,10 @@ Decoded decode_pfm(const Source& source) {
     out.raw.height = next_size(source, position);
     const size_t scale_at = position;
     const auto scale = parse_double(next_word(source, position));
-    if (!scale || !std::isfinite(*scale) || *scale == 0)
-        source.fail("expected a scale other than 0 in the PFM header: -1.0 says little-endian", scale_at);
+    // As a float, too: a scale that only a double can hold would make infinities of every value.
+    const auto factor = static_cast<float>(scale ? clamp_to(std::fabs(*scale), 0.0, 1e39) : 0);
+    if (!(factor > 0) || !is_finite(factor))
+        source.fail("expected a finite scale other than 0 in the PFM header: -1.0 says little-endian", scale_at);
 
     const uint64_t row = uint64_t(out.raw.width) * out.raw.channels * sizeof(float);
     const uint64_t there = source.bytes.size() - position;
@@ -58,7 +61,6 @@ Decoded decode_pfm(const Source& source) {
                     source.bytes.size());
     out.raw.data.resize(row * out.raw.height);
     const bool swap = *scale > 0;
-    const auto factor = static_cast<float>(std::fabs(*scale));
     for (uint32_t y = 0; y < out.raw.height; ++y) {
         const char* from = source.bytes.data() + position + (out.raw.height - 1 - y) * row;
         std::byte* to = out.raw.data.data() + y * row;

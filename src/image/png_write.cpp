@@ -68,6 +68,19 @@ bool write_png(Writer& writer, png_structp png, png_infop info) {
     return true;
 }
 
+void count_not_finite(const Image& image, const ColourChannels& colour, const std::string& path,
+                      Diagnostics& diagnostics) {
+    uint64_t pixels = 0;
+    for (size_t at = 0; at < image.pixels.size(); at += image.channels.size()) {
+        bool finite = !colour.alpha || is_finite(image.pixels[at + *colour.alpha]);
+        for (size_t c = 0; c < colour.count; ++c) finite = finite && is_finite(image.pixels[at + colour.index[c]]);
+        pixels += !finite;
+    }
+    if (pixels)
+        diagnostics.warn("a pixel has values that are not finite: NaN was written as 0, infinity as the brightest",
+                         {path, 0, 0, {}}, pixels);
+}
+
 std::vector<png_byte> to_bytes(const Image& image, const ColourChannels& colour, const View& view) {
     const SrgbQuantizer quantize;
     const size_t step = image.channels.size();
@@ -123,6 +136,7 @@ std::string encode_png(const Image& image, const ImageWriteOptions& options, con
                        {},
                        suggestion(options.view, view_names())}};
     const ColourChannels colour = colour_channels(image, "PNG", true, path, diagnostics);
+    count_not_finite(image, colour, path, diagnostics);
     std::vector<png_byte> bytes = to_bytes(image, colour, *view);
 
     Writer writer;

@@ -229,5 +229,42 @@ TEST(WriteImage, SaysWhatAFormatLeavesOut) {
     EXPECT_NE(diagnostics.warnings()[0].message.find("A, depth"), std::string::npos);
 }
 
+TEST(Scales, ThatNoFloatCanHoldAreRefused) {
+    const auto fails = [](const std::string& bytes) { return !decode_image(bytes, "test", {}); };
+    for (const char* scale : {"1e300", "-1e39", "1e-300", "nan", "inf", "0"})
+        EXPECT_TRUE(fails(std::string("Pf\n1 1\n") + scale + "\nabcd")) << scale;
+    for (const char* exposure : {"1e300", "1e39", "1e-39", "1e-300"})
+        EXPECT_TRUE(fails(std::string("#?RADIANCE\nEXPOSURE=") + exposure + "\n\n-Y 1 +X 1\nabcd")) << exposure;
+    EXPECT_FALSE(fails("Pf\n1 1\n-1e38\nabcd"));
+    EXPECT_FALSE(fails("#?RADIANCE\nEXPOSURE=1e37\n\n-Y 1 +X 1\nabcd"));
+}
+
+TEST(PngOutput, CountsPixelsThatAreNotFiniteAndDefinesThem) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    Image image;
+    image.width = 5, image.height = 1;
+    image.channels = {"R", "G", "B", "A"};
+    image.pixels = {kNan, kInf, -kInf, 1, 1, 1, 1, kNan, 0, 0, 0, kInf, 3e38f, -3e38f, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f};
+    const test::TemporaryFolder folder;
+    const std::string path = folder.file("a.png");
+    for (const std::string_view view : view_names())
+        for (const float exposure : {0.0f, 100.0f, -100.0f}) {
+            Diagnostics diagnostics;
+            ImageWriteOptions options;
+            options.view = view, options.exposure = exposure;
+            ASSERT_TRUE(write_image(path, image, options, &diagnostics));
+            ASSERT_EQ(diagnostics.warnings().size(), 1u) << view;
+            EXPECT_EQ(diagnostics.warnings()[0].count, 3u);  // the large ones and the overflow of the exposure are not
+            EXPECT_NE(diagnostics.warnings()[0].message.find("not finite"), std::string::npos);
+            const RawImage raw = read_texels(path, {}).value();
+            EXPECT_EQ(raw.data[7], std::byte{0});
+            EXPECT_EQ(raw.data[11], std::byte{255});
+            if (view != "srgb") continue;
+            EXPECT_EQ(raw.data[0], std::byte{0});
+            EXPECT_EQ(raw.data[1], std::byte{255});
+            EXPECT_EQ(raw.data[2], std::byte{0});
+        }
+}
+
 }  // namespace
 }  // namespace steradian
