@@ -20,7 +20,7 @@ int run_convert(const ConvertOptions& options) {
     const auto image = read_image(options.input);
     if (!image) return report(image.error());
     Diagnostics diagnostics;
-    const Status status = write_image(options.output, *image, options.picture.write, &diagnostics);
+    const Status status = write_image(options.output, *image, options.picture.write(), &diagnostics);
     report(diagnostics);
     return status ? kDone : report(status.error());
 }
@@ -41,12 +41,12 @@ constexpr const char* kFooter =
 void add_convert(CLI::App& app, Action& action) {
     auto options = std::make_shared<ConvertOptions>();
     CLI::App* c =
-        app.add_subcommand("convert", "A picture from one format to another, for viewing or for other programs");
+        add_command(app, action, "convert", "A picture from one format to another, for viewing or for other programs",
+                    options, run_convert);
     c->footer(kFooter);
     c->add_option("IN", options->input, "The picture to read: EXR, HDR, PFM, PNG or JPEG")->required();
     c->add_option("OUT", options->output, "The picture to write: .exr, .hdr, .pfm or .png by its name")->required();
     add_picture_options(c, options->picture, "Options");
-    c->callback([options, &action] { action = [options] { return run_convert(*options); }; });
 }
 
 }  // namespace steradian::cli

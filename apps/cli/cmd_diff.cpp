@@ -114,20 +114,20 @@ constexpr const char* kFooter =
 void add_diff(CLI::App& app, Action& action) {
     auto options = std::make_shared<DiffOptions>();
     CLI::App* c =
-        app.add_subcommand("diff", "How far two pictures are apart: MSE, relMSE, PSNR, the largest difference");
+        add_command(app, action, "diff", "How far two pictures are apart: MSE, relMSE, PSNR, the largest difference",
+                    options, run_diff);
     c->footer(kFooter);
     c->add_option("A", options->a, "A picture")->required();
     c->add_option("B", options->b, "Another one, the reference")->required();
     c->add_option("--output", options->output, "Write |A - B| as a picture: .exr, .hdr, .pfm or .png");
-    const auto bound = [&](const char* name, std::optional<double>& value, const char* help) {
-        c->add_option(name, value, help)->check(CLI::Number);
+    const auto bound = [&](const char* name, std::optional<double>& value, double lowest, const char* help) {
+        add_real(c, name, value, lowest, 1e300, help);
     };
-    bound("--max-abs", options->max_abs, "Bound on the largest |A - B| of any channel");
-    bound("--max-mse", options->max_mse, "Bound on the MSE");
-    bound("--max-rel-mse", options->max_rel_mse, "Bound on the relMSE");
-    bound("--min-psnr", options->min_psnr, "Bound on the PSNR, in dB");
+    bound("--max-abs", options->max_abs, 0, "Bound on the largest |A - B| of any channel");
+    bound("--max-mse", options->max_mse, 0, "Bound on the MSE");
+    bound("--max-rel-mse", options->max_rel_mse, 0, "Bound on the relMSE");
+    bound("--min-psnr", options->min_psnr, -1e300, "Bound on the PSNR, in dB");
     c->add_flag("--json", options->json, "As JSON");
-    c->callback([options, &action] { action = [options] { return run_diff(*options); }; });
 }
 
 }  // namespace steradian::cli

@@ -165,8 +165,14 @@ Status print_scene_info(const std::string& path, bool json) {
     return Ok{};
 }
 
-int run_info(const std::string& path, bool json) {
-    Status status = is_picture(path) ? print_picture_info(path, json, std::cout) : print_scene_info(path, json);
+struct InfoOptions {
+    std::string path;
+    bool json = false;
+};
+
+int run_info(const InfoOptions& o) {
+    Status status =
+        is_picture(o.path) ? print_picture_info(o.path, o.json, std::cout) : print_scene_info(o.path, o.json);
     if (status) status = finish_stdout();
     return status ? kDone : report(status.error());
 }
@@ -174,13 +180,12 @@ int run_info(const std::string& path, bool json) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& action) {
-    auto path = std::make_shared<std::string>();
-    auto json = std::make_shared<bool>(false);
-    CLI::App* c = app.add_subcommand(
-        "info", "What is in a scene (counts, bounds, memory, settings) or a picture (metadata, hash)");
-    c->add_option("FILE", *path, "A scene, a model or a picture")->required();
-    c->add_flag("--json", *json, "As JSON");
-    c->callback([path, json, &action] { action = [path, json] { return run_info(*path, *json); }; });
+    auto o = std::make_shared<InfoOptions>();
+    CLI::App* c =
+        add_command(app, action, "info",
+                    "What is in a scene (counts, bounds, memory, settings) or a picture (metadata, hash)", o, run_info);
+    c->add_option("FILE", o->path, "A scene, a model or a picture")->required();
+    c->add_flag("--json", o->json, "As JSON");
 }
 
 }  // namespace steradian::cli

@@ -16,6 +16,7 @@
 #include "command.h"
 #include "progress.h"
 #include "scene/names.h"
+#include "scene/validate.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
 #include "steradian/render.h"
@@ -83,21 +84,83 @@ std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char s
     return out;
 }
 
-Status apply_filter(const std::string& text, Filter& filter) {
+Result<Filter> parse_filter(const std::string& text) {
     const size_t colon = text.find(':');
     const auto kind = find_name<FilterKind>(text.substr(0, colon));
     if (!kind)
         return usage_error(fmt::format("--filter: unknown filter '{}'", escape_for_display(text)),
                            suggestion(text.substr(0, colon), names_of<FilterKind>()));
-    filter = {*kind, default_filter_radius(*kind)};
-    if (colon == std::string::npos) return Ok{};
+    if (colon == std::string::npos) return Filter{*kind, default_filter_radius(*kind)};
     const auto radius = parse_double(text.substr(colon + 1));
     if (!radius)
         return usage_error(
             fmt::format("--filter: '{}' is not a radius in pixels", escape_for_display(text.substr(colon + 1))),
             "for example --filter gaussian:1.5");
-    filter.radius = static_cast<float>(std::clamp(*radius, -1e30, 1e30));
-    return Ok{};
+    return Filter{*kind, static_cast<float>(std::clamp(*radius, -1e30, 1e30))};
+}
+
+Result<Crop> parse_crop(const std::string& text) {
+    const auto crop = parse_numbers(text, ',', 4);
+    if (!crop)
+        return usage_error(fmt::format("--crop: '{}' is not X0,Y0,X1,Y1", escape_for_display(text)),
+                           "pixels from the top left corner, X1 and Y1 not included");
+    const Crop c{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
+    if (c.x0 >= c.x1 || c.y0 >= c.y1) return usage_error(fmt::format("--crop: {} is an empty window", text));
+    return c;
+}
+
+struct Size {
+    uint32_t width, height;
+};
+
+Result<Size> parse_size(const std::string& text) {
+    const auto size = parse_numbers(text, 'x', 2);
+    if (!size)
+        return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(text)),
+                           "for example --size 1920x1080");
+    return Size{(*size)[0], (*size)[1]};
+}
+
+/// What the command line says about the picture. It wins over what the scene says.
+struct Overrides {
+    std::optional<Size> size;
+    std::optional<Crop> crop;
+    bool whole = false;  ///< --crop all
+    std::optional<Filter> filter;
+};
+
+void override(const RenderOptions& o, const Overrides& said, RenderSettings& s) {
+    if (o.spp) s.samples_per_pixel = *o.spp;
+    if (o.seed) s.seed = *o.seed;
+    if (o.max_depth) s.max_depth = *o.max_depth;
+    if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
+    if (!o.sampler.empty()) s.sampler = *find_name<SamplerKind>(o.sampler);
+    if (said.size) s.width = said.size->width, s.height = said.size->height;
+    if (said.whole) s.crop.reset();
+    if (said.crop) s.crop = said.crop;
+    if (said.filter) s.filter = *said.filter;
+}
+
+/// Parses, and refuses what no scene could make right: loading one may take long.
+Result<Overrides> parse_overrides(const RenderOptions& o) {
+    Overrides said;
+    const auto take = [](auto parsed, auto& into) -> Status {
+        if (!parsed) return std::move(parsed).error();
+        into = *parsed;
+        return Ok{};
+    };
+    if (!o.size.empty())
+        if (auto status = take(parse_size(o.size), said.size); !status) return std::move(status).error();
+    said.whole = o.crop == "all";
+    if (!o.crop.empty() && !said.whole)
+        if (auto status = take(parse_crop(o.crop), said.crop); !status) return std::move(status).error();
+    if (!o.filter.empty())
+        if (auto status = take(parse_filter(o.filter), said.filter); !status) return std::move(status).error();
+    RenderSettings alone;
+    if (said.crop) alone.width = said.crop->x1, alone.height = said.crop->y1;  // at least, if the scene says the size
+    override(o, said, alone);
+    if (auto status = validate(alone); !status) return std::move(status).error();
+    return said;
 }
 
 std::string camera_hint(const std::string& name, const Scene& scene) {
@@ -122,35 +185,16 @@ Status apply_camera(const std::string& name, const Scene& scene, uint32_t& camer
                        camera_hint(name, scene));
 }
 
-/// What the command line says wins over what the scene says.
-Status apply(const RenderOptions& o, const Scene& scene, RenderSettings& s) {
-    if (o.spp) s.samples_per_pixel = *o.spp;
-    if (o.seed) s.seed = *o.seed;
-    if (o.max_depth) s.max_depth = *o.max_depth;
-    if (!o.size.empty()) {
-        const auto size = parse_numbers(o.size, 'x', 2);
-        if (!size)
-            return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(o.size)),
-                               "for example --size 1920x1080");
-        if (s.crop)
-            return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
-        s.width = (*size)[0], s.height = (*size)[1];
-    }
-    if (o.crop == "all") {
-        s.crop.reset();
-    } else if (!o.crop.empty()) {
-        const auto crop = parse_numbers(o.crop, ',', 4);
-        if (!crop)
-            return usage_error(fmt::format("--crop: '{}' is not X0,Y0,X1,Y1", escape_for_display(o.crop)),
-                               "pixels from the top left corner, X1 and Y1 not included");
-        s.crop = Crop{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
-    }
-    if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
-    if (!o.sampler.empty()) s.sampler = *find_name<SamplerKind>(o.sampler);
-    if (!o.filter.empty())
-        if (auto status = apply_filter(o.filter, s.filter); !status) return status;
-    if (!o.camera.empty()) return apply_camera(o.camera, scene, s.camera);
-    return Ok{};
+/// The scene's settings with the command line's, checked before anything is derived from the scene.
+Result<RenderSettings> settings_for(const RenderOptions& o, const Overrides& said, const LoadedScene& loaded) {
+    RenderSettings s = loaded.settings;
+    if (said.size && s.crop && o.crop.empty())
+        return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
+    override(o, said, s);
+    if (auto status = validate(s); !status) return std::move(status).error();
+    if (!o.camera.empty())
+        if (auto status = apply_camera(o.camera, loaded.scene, s.camera); !status) return std::move(status).error();
+    return s;
 }
 
 std::string default_output(const std::string& scene) {
@@ -231,7 +275,7 @@ Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const Rende
 std::vector<std::string> write_outputs(const RenderOptions& o, const Image& image, Diagnostics& diagnostics) {
     std::vector<std::string> written;
     for (const std::string& path : o.outputs) {
-        const Status status = write_image(path, image, o.picture.write, &diagnostics);
+        const Status status = write_image(path, image, o.picture.write(), &diagnostics);
         status ? written.push_back(path) : void(report(status.error()));
     }
     return written;
@@ -252,31 +296,34 @@ int finish(const RenderOptions& o, const RenderSettings& settings, const RenderR
     return signal != 0 ? 128 + signal : kDone;
 }
 
-int run_render(RenderOptions o) {
+int run_render(const RenderOptions& given) {
     SignalScope signals;
+    RenderOptions o = given;
     if (o.outputs.empty() && !o.json) o.outputs.push_back(default_output(o.scene));
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
+    const auto said = parse_overrides(o);
+    if (!said) return report(said.error());
 
     const uint32_t threads = o.execution.threads ? o.execution.threads : hardware_threads();
     const ThreadLimit limit(std::min(threads, kMaxThreads));
     auto loaded = load_scene(o.scene);
     if (!loaded) return report(loaded.error());
     if (auto status = check_not_inputs(o.outputs, loaded->files); !status) return report(status.error());
-    RenderSettings settings = loaded->settings;
-    if (auto status = apply(o, loaded->scene, settings); !status) return report(status.error());
+    const auto settings = settings_for(o, *said, *loaded);
+    if (!settings) return report(settings.error());
     Diagnostics diagnostics = std::move(loaded->diagnostics);
     auto scene = prepare(std::move(loaded->scene), o.execution, diagnostics);
     if (!scene) return report(scene.error());
     if (!o.quiet) report(diagnostics);
 
-    const auto result = run_job(o, std::move(*scene), settings, signals);
+    const auto result = run_job(o, std::move(*scene), *settings, signals);
     if (!result) return report(result.error());
     if (g_signal != 0 && result->max_samples == 0) {
         std::cerr << "stopped before the first samples were done: nothing was written\n";
         return 128 + g_signal;
     }
-    return finish(o, settings, *result, std::move(diagnostics));
+    return finish(o, *settings, *result, std::move(diagnostics));
 }
 
 template <class Kind>
@@ -289,7 +336,7 @@ CLI::IsMember one_of() {
 
 void add_render(CLI::App& app, Action& action) {
     auto o = std::make_shared<RenderOptions>();
-    CLI::App* c = app.add_subcommand("render", "Render a scene (.json) or a model (.obj, .ply)");
+    CLI::App* c = add_command(app, action, "render", "Render a scene (.json) or a model (.obj, .ply)", o, run_render);
     c->footer(
         "What is not given comes from the scene file. A model without a scene gets a camera that frames it and a "
         "neutral\n"
@@ -341,7 +388,6 @@ void add_render(CLI::App& app, Action& action) {
         ->group("Execution");
     c->add_flag("-q,--quiet", o->quiet, "Only errors");
     c->add_flag("--json", o->json, "Statistics and the picture's hash as JSON on standard output");
-    c->callback([o, &action] { action = [o] { return run_render(*o); }; });
 }
 
 }  // namespace steradian::cli

@@ -67,27 +67,21 @@ double parse_real(const std::string& option, const std::string& text, double low
     throw CLI::ValidationError(option, fmt::format("expected a number from {} to {}, not '{}'", lowest, highest, text));
 }
 
+ImageWriteOptions PictureOptions::write() const {
+    ImageWriteOptions out;
+    if (half) out.exr = ExrPrecision::half;
+    if (exposure) out.exposure = static_cast<float>(*exposure);
+    if (view) out.view = *view;
+    return out;
+}
+
 void add_picture_options(CLI::App* c, PictureOptions& options, const std::string& group) {
-    const auto half = [&options](int64_t) {
-        options.write.exr = ExrPrecision::half;
-        options.exr_only = true;
-    };
-    c->add_flag_function("--half", half, "EXR with 16-bit instead of 32-bit floats; beyond 65504 they are clamped")
+    c->add_flag("--half", options.half, "EXR with 16-bit instead of 32-bit floats; beyond 65504 they are clamped")
         ->group(group);
-    const auto exposure = [&options](const std::string& text) {
-        options.write.exposure = static_cast<float>(parse_real("--exposure", text, -100, 100));
-        options.png_only = true;
-    };
-    c->add_option_function<std::string>("--exposure", exposure, "Stops, for PNG (+1: twice as bright)")
-        ->type_name("FLOAT")
-        ->group(group);
-    const auto view = [&options](const std::string& text) {
-        options.write.view = text;
-        options.png_only = true;
-    };
-    c->add_option_function<std::string>("--view", view, "View transform for PNG")
+    add_real(c, "--exposure", options.exposure, -100, 100, "Stops, for PNG (+1: twice as bright)")->group(group);
+    c->add_option("--view", options.view, "View transform for PNG")
         ->check(CLI::IsMember(std::vector<std::string>(view_names().begin(), view_names().end())))
-        ->default_str(options.write.view)
+        ->default_str(ImageWriteOptions{}.view)
         ->group(group);
 }
 
@@ -115,9 +109,9 @@ Status check_effect(std::span<const std::string> outputs, const PictureOptions& 
         return std::any_of(outputs.begin(), outputs.end(),
                            [&](const std::string& path) { return extension_of(path) == extension; });
     };
-    if (options.png_only && !writes(".png"))
+    if ((options.exposure || options.view) && !writes(".png"))
         return usage_error("--exposure and --view are for PNG: the other formats hold linear light as it is");
-    if (options.exr_only && !writes(".exr")) return usage_error("--half is for EXR");
+    if (options.half && !writes(".exr")) return usage_error("--half is for EXR");
     return Ok{};
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -56,11 +57,23 @@ CLI::Option* add_count(CLI::App* c, const std::string& names, Value& value, T lo
     return c->add_option_function<std::string>(names, set, help)->type_name("COUNT");
 }
 
+/// An option with a finite number from `lowest` to `highest`; `names` as above, `value` a float, double or an optional.
+template <class Value>
+CLI::Option* add_real(CLI::App* c, const std::string& names, Value& value, double lowest, double highest,
+                      const std::string& help) {
+    const auto set = [&value, name = names.substr(names.rfind(',') + 1), lowest, highest](const std::string& text) {
+        value = parse_real(name, text, lowest, highest);
+    };
+    return c->add_option_function<std::string>(names, set, help)->type_name("FLOAT");
+}
+
 /// How pictures are to be written; one set of options for all commands that choose it.
 struct PictureOptions {
-    ImageWriteOptions write;
-    bool png_only = false;  ///< --exposure or --view was given
-    bool exr_only = false;  ///< --half was given
+    std::optional<double> exposure;
+    std::optional<std::string> view;
+    bool half = false;
+
+    ImageWriteOptions write() const;
 };
 void add_picture_options(CLI::App* c, PictureOptions& options, const std::string& group);
 
@@ -91,6 +104,17 @@ void write_field(JsonWriter& w, const char* key, std::string_view text);
 
 /// Every subcommand registers itself and, when chosen, leaves what is to be run in `action`.
 using Action = std::function<int()>;
+
+/// A subcommand that, when chosen, leaves `run` with its options to be called. Declare its options on what this
+/// returns.
+template <class Options>
+CLI::App* add_command(CLI::App& app, Action& action, const std::string& name, const std::string& about,
+                      const std::shared_ptr<Options>& options, int (*run)(const Options&)) {
+    CLI::App* c = app.add_subcommand(name, about);
+    c->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
+    return c;
+}
+
 void add_render(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);

@@ -220,6 +220,26 @@ Status validate(const Scene& scene) {
     }
 }
 
+Status validate(const RenderSettings& s) {
+    const auto usage = [](std::string message) { return make_error(ErrorCode::usage, std::move(message)); };
+    if (s.width < 1 || s.height < 1) return usage("the picture must be at least 1 × 1 pixels");
+    if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
+        return make_error(ErrorCode::resources,
+                          fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width, s.height,
+                                      kMaxResolution, kMaxPixels));
+    if (const auto& c = s.crop; c && !(c->x0 < c->x1 && c->y0 < c->y1 && c->x1 <= s.width && c->y1 <= s.height))
+        return usage(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels", c->x0, c->y0,
+                                 c->x1, c->y1, s.width, s.height));
+    if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
+        return usage(fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
+    if (s.max_depth > kMaxDepth)
+        return usage(fmt::format("a depth of {}: expected at most {}", s.max_depth, kMaxDepth));
+    if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
+        return usage(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius, kMinFilterRadius,
+                                 kMaxFilterRadius));
+    return Ok{};
+}
+
 void sanitize(Scene& scene, Diagnostics& diagnostics) {
     uint64_t triangles = 0, uvs = 0, normals = 0;
     for (Mesh& mesh : scene.meshes) {

@@ -3,12 +3,17 @@
 
 #include "steradian/result.h"
 #include "steradian/scene.h"
+#include "steradian/settings.h"
 
 namespace steradian {
 
 /// Every id refers to something, every number is finite and in its documented range, index counts fit, at most one
 /// environment, one area light per instance. The first fault is named (by the element's name where it has one).
 Status validate(const Scene& scene);
+
+/// What can be known of settings without their scene: sizes, crop, samples, depth and filter are in their documented
+/// ranges. Codes: usage, or resources for a picture beyond kMaxResolution or kMaxPixels.
+Status validate(const RenderSettings& settings);
 
 /// Removes triangles whose vertices are not finite or beyond kMaxCoordinate, replaces non-finite uvs and zero or
 /// non-finite normals; each kind is one counted warning. Run before validate.

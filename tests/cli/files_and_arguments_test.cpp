@@ -146,7 +146,7 @@ TEST_F(FilesAndArguments, SignalsIgnoredAtTheStartStayIgnored) {
         ::signal(SIGHUP, SIG_IGN);
         ::signal(SIGINT, SIG_IGN);
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+    ASSERT_TRUE(process.shows_progress());
     process.send(SIGHUP), process.send(SIGINT);
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     process.send(SIGTERM);
@@ -176,6 +176,57 @@ TEST_F(FilesAndArguments, InfoLooksIntoTheFile) {
 
 TEST_F(FilesAndArguments, AnUnknownCameraNamesThoseThatThereAre) {
     expect_usage({"render", "scene.json", "--camera", "xyzzyx"}, "the scene has: front, side");
+}
+
+TEST_F(FilesAndArguments, WhatNeedsNoSceneIsCheckedBeforeOneIsLoaded) {
+    // None of these may look at the scene, which is not there.
+    for (const std::vector<std::string>& wrong :
+         std::vector<std::vector<std::string>>{{"--size", "10"},
+                                               {"--size", "0x10"},
+                                               {"--crop", "1,2,3"},
+                                               {"--crop", "5,5,5,9"},
+                                               {"--size", "20x20", "--crop", "0,0,21,20"},
+                                               {"--filter", "gausian"},
+                                               {"--filter", "gaussian:x"},
+                                               {"--filter", "gaussian:nan"},
+                                               {"--filter", "gaussian:inf"},
+                                               {"--filter", "gaussian:-1"},
+                                               {"--filter", "gaussian:1e300"},
+                                               {"--spp", "0"},
+                                               {"--threads", "-1"},
+                                               {"-o", "a.gif"},
+                                               {"-o", "a.png", "-o", "./a.png"}}) {
+        std::vector<std::string> arguments{"render", "missing.json"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        const Outcome o = steradian(arguments);
+        EXPECT_EQ(o.code, 2) << wrong[1] << o.err;
+        EXPECT_EQ(o.err.find("missing.json"), std::string::npos) << o.err;
+    }
+    for (const std::vector<std::string>& limit : std::vector<std::vector<std::string>>{
+             {"--size", "1000000x1000000"}, {"--crop", "0,0,1000000,1000000"}, {"-o", "nowhere/a.png"}})
+        EXPECT_EQ(steradian({"render", "missing.json", limit[0], limit[1]}).code, 4) << limit[1];
+    EXPECT_EQ(steradian({"render", "missing.json", "--size", "20x20", "--crop", "0,0,20,20"}).code, 3);
+    EXPECT_EQ(steradian({"render", "missing.json", "--crop", "1000,1000,1001,1001"}).code, 3);
+}
+
+TEST_F(FilesAndArguments, BoundsOfDiffAreFiniteNumbers) {
+    render_to("a.pfm");
+    for (const char* option : {"--max-abs", "--max-mse", "--max-rel-mse", "--min-psnr"})
+        for (const char* wrong : {"nan", "inf", "1e400", "1.2.3", "", "0x10", "1e"})
+            expect_usage({"diff", "a.pfm", "a.pfm", option, wrong}, std::string(option) + ": expected a number");
+    for (const char* option : {"--max-abs", "--max-mse", "--max-rel-mse"})
+        expect_usage({"diff", "a.pfm", "a.pfm", option, "-1"}, std::string(option) + ": expected a number from 0");
+    EXPECT_EQ(steradian({"diff", "a.pfm", "a.pfm", "--max-abs", "0", "--min-psnr", "-5"}).code, 0);
+}
+
+TEST_F(FilesAndArguments, ConvertCountsWhatAPngCannotShow) {
+    const std::string nan("\0\0\xc0\x7f", 4), infinity("\0\0\x80\x7f", 4), zero(4, '\0');
+    const std::string pfm = "PF\n3 1\n-1\n" + nan + zero + nan + zero + infinity + zero + zero + zero + zero;
+    spit(folder_.file("odd.pfm"), pfm);
+    const Outcome o = steradian({"convert", "odd.pfm", "odd.png"});
+    EXPECT_EQ(o.code, 0);
+    EXPECT_NE(o.err.find("not finite"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("(2 times)"), std::string::npos) << o.err;
 }
 
 }  // namespace

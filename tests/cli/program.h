@@ -9,8 +9,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "support/support.h"
@@ -60,6 +62,14 @@ public:
     Process& operator=(const Process&) = delete;
 
     void send(int signal) const { ::kill(pid_, signal); }
+    /// Waits for the first line of progress: the render is then under way. False when none comes within two minutes.
+    bool shows_progress() const {
+        for (int i = 0; i < 2400; ++i) {
+            if (std::filesystem::exists(err_) && std::filesystem::file_size(err_) > 0) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        return false;
+    }
     Outcome wait() {
         int status = 0;
         ::waitpid(pid_, &status, 0);

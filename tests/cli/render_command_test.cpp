@@ -124,16 +124,14 @@ TEST_F(RenderCommand, BadScenesExitWith3AndLeaveTheOldPictureAlone) {
     expect_files({"old.png", "bad.json"});
 }
 
-TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeRendering) {
+TEST_F(RenderCommand, OutputsThatCannotWorkAreRefusedBeforeLoading) {
     fs::create_directory(folder_.file("folder.png"));
     fs::create_symlink("nowhere/x", folder_.file("dangling.png"));
-    const auto begin = std::chrono::steady_clock::now();
     for (const char* path : {"missing/a.png", "folder.png", "dangling.png", "scene.json/a.png"}) {
-        const Outcome o = steradian({"render", "scene.json", "--spp", "100000", "-o", path});
+        const Outcome o = steradian({"render", "missing.json", "-o", path});
         EXPECT_EQ(o.code, 4) << path << o.err;
         EXPECT_NE(o.err.find(path), std::string::npos) << o.err;
     }
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 TEST_F(RenderCommand, AWriteThatFailsKeepsTheOldFile) {
@@ -156,11 +154,12 @@ class RenderSignal : public RenderCommand, public testing::WithParamInterface<st
 
 TEST_P(RenderSignal, StopsWithWhatIsDone) {
     Process process(folder_, {"render", "scene.json", "--spp", "1000000000", "-o", "a.exr", "--json"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    ASSERT_TRUE(process.shows_progress());
     const auto begin = std::chrono::steady_clock::now();
     process.send(GetParam().first);
     const Outcome o = process.wait();
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin,
+              std::chrono::seconds(20));  // 2 s are promised, on a machine with nothing else to do
     EXPECT_EQ(o.code, GetParam().second) << o.err;
     EXPECT_EQ(field(o.out, "complete"), "false");
     const auto image = read_image(folder_.file("a.exr"));

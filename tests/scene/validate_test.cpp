@@ -157,5 +157,42 @@ TEST(BakeTransforms, LeavesSharedMeshesAlone) {
     EXPECT_FALSE(is_identity(s.instances[0].world_from_object));
 }
 
+TEST(ValidateSettings, RangesAreThoseOfTheDocumentation) {
+    const auto code = [](const std::function<void(RenderSettings&)>& change) -> std::optional<ErrorCode> {
+        RenderSettings settings;
+        change(settings);
+        const Status status = validate(settings);
+        if (status) return std::nullopt;
+        return status.error().code;
+    };
+    using S = RenderSettings;
+    for (const std::function<void(S&)>& good : std::vector<std::function<void(S&)>>{
+             [](S&) {}, [](S& s) { s.width = s.height = 1; }, [](S& s) { s.width = kMaxResolution, s.height = 1024; },
+             [](S& s) {
+                 s.crop = Crop{511, 511, 512, 512};
+             },
+             [](S& s) { s.samples_per_pixel = kMaxSamplesPerPixel; }, [](S& s) { s.filter.radius = 0.01f; },
+             [](S& s) { s.filter.radius = 32; }, [](S& s) { s.max_depth = 0; }})
+        EXPECT_EQ(code(good), std::nullopt);
+    for (const std::function<void(S&)>& wrong : std::vector<std::function<void(S&)>>{
+             [](S& s) { s.width = 0; }, [](S& s) { s.height = 0; },
+             [](S& s) {
+                 s.crop = Crop{5, 5, 5, 9};
+             },
+             [](S& s) {
+                 s.crop = Crop{9, 5, 8, 9};
+             },
+             [](S& s) {
+                 s.crop = Crop{0, 0, 513, 5};
+             },
+             [](S& s) { s.samples_per_pixel = 0; }, [](S& s) { s.samples_per_pixel = kMaxSamplesPerPixel + 1; },
+             [](S& s) { s.max_depth = kMaxDepth + 1; }, [](S& s) { s.filter.radius = 0; },
+             [](S& s) { s.filter.radius = -1; }, [](S& s) { s.filter.radius = kNan; },
+             [](S& s) { s.filter.radius = kInf; }})
+        EXPECT_EQ(code(wrong), ErrorCode::usage);
+    EXPECT_EQ(code([](S& s) { s.width = kMaxResolution + 1; }), ErrorCode::resources);
+    EXPECT_EQ(code([](S& s) { s.width = s.height = 32769; }), ErrorCode::resources);
+}
+
 }  // namespace
 }  // namespace steradian
