@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <iostream>
 
+#include "base/names.h"
 #include "base/text.h"
 #include "command.h"
 #include "math/transform.h"
 #include "picture_info.h"
 #include "progress.h"
-#include "base/names.h"
 #include "steradian/load.h"
 
 namespace steradian::cli {

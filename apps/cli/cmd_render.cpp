@@ -11,11 +11,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/names.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "command.h"
 #include "progress.h"
-#include "base/names.h"
 #include "scene/validate.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"

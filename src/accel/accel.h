@@ -49,7 +49,7 @@ struct GeometryInstance {
 
 struct AccelOptions {
     BvhBuilder builder = BvhBuilder::sah;
-    uint32_t max_depth = 64;          ///< 1 … 64 levels below a root; a leaf there takes whatever is left
+    uint32_t max_depth = 64;  ///< 1 … 64 levels below a root; a leaf there takes whatever is left
     Isa isa = Isa::automatic;
     std::function<bool()> cancelled;  ///< asked now and then during the build, by one thread at a time
 };
@@ -66,8 +66,9 @@ public:
     /// Primitives with coordinates that are not finite or beyond kMaxCoordinate, or with a negative radius, are refused
     /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
     /// geometries that do not exist; a transform that is singular, scales beyond 1e±30 or leads beyond kMaxCoordinate.
-    /// `usage` for a max_depth out of range or an instruction set that the machine lacks, `resources` when memory runs out
-    /// or a geometry has 2^28 primitives or more, `render_failed` when cancelled. Uses the workers of the caller's arena (base/parallel.h).
+    /// `usage` for a max_depth out of range or an instruction set that the machine lacks, `resources` when memory runs
+    /// out or a geometry has 2^28 primitives or more, `render_failed` when cancelled. Uses the workers of the caller's
+    /// arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
     Accel(Accel&&) noexcept;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "accel/split.h"
-#include "base/large_array.h"
 #include "accel/wide_node.h"
+#include "base/large_array.h"
 #include "steradian/settings.h"
 
 namespace steradian {

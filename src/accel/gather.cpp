@@ -175,7 +175,8 @@ private:
         return node;
     }
     static void set_box(WideNode& node, uint32_t i, const Box& box) {
-        for (int axis = 0; axis < 3; ++axis) node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
+        for (int axis = 0; axis < 3; ++axis)
+            node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
     }
 
     /// The order of the children by their centres along the diagonal of each octant.

@@ -87,9 +87,7 @@ struct EdgeFunctions {
     double z[3];
 
     /// False when the triangle is missed: when two weights have opposite signs, or all of them vanish.
-    bool inside() const {
-        return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0;
-    }
+    bool inside() const { return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0; }
     /// The candidate of a triangle that is not missed.
     TriangleCandidate candidate(double d_z) const {
         const double sum = u + v + w;

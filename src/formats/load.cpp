@@ -112,6 +112,8 @@ Result<LoadedScene> guarded(const std::string& name, Load load) {
         return out_of_memory(name);
     } catch (const std::length_error&) {
         return out_of_memory(name);
+    } catch (const std::runtime_error& e) {  // of TBB: it cannot start its threads
+        return about_file(name, ErrorCode::resources, std::string("cannot load the scene: ") + e.what());
     }
 }
 

@@ -22,10 +22,8 @@ std::vector<Variant> variants() {
     const std::vector<Isa> isas = supported_isas();
     for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa});
     size_t turn = 0;
-    for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::median, 64u},
-                                             {BvhBuilder::sah, 5u},
-                                             {BvhBuilder::median, 3u},
-                                             {BvhBuilder::sah, 1u}})
+    for (const auto& [builder, max_depth] :
+         {std::pair{BvhBuilder::median, 64u}, {BvhBuilder::sah, 5u}, {BvhBuilder::median, 3u}, {BvhBuilder::sah, 1u}})
         all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
     return all;
 }
@@ -116,9 +114,9 @@ TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {
                 for (size_t k = 0; k <= expected.size(); ++k) {
                     const Hit& wanted = k < expected.size() ? expected[k] : Hit{};
                     ASSERT_TRUE(same_bits(hit, wanted))
-                        << scenes[s].name << ", " << name_of(variants()[v]) << ", hit " << k << " of " << expected.size()
-                        << "\nray      " << describe(ray) << "\nexpected " << describe(wanted) << "\ngot      "
-                        << describe(hit);
+                        << scenes[s].name << ", " << name_of(variants()[v]) << ", hit " << k << " of "
+                        << expected.size() << "\nray      " << describe(ray) << "\nexpected " << describe(wanted)
+                        << "\ngot      " << describe(hit);
                     const Hit after = hit;
                     built[v].next_hit({&ray, 1}, {&after, 1}, {&hit, 1});
                 }

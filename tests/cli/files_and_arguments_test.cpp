@@ -229,5 +229,30 @@ TEST_F(FilesAndArguments, ConvertCountsWhatAPngCannotShow) {
     EXPECT_NE(o.err.find("(2 times)"), std::string::npos) << o.err;
 }
 
+/// The sanitizers reserve more address space than any limit would leave.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+TEST_F(FilesAndArguments, TooLittleMemoryIsSaidAndNothingIsWritten) {
+    if (kSanitized) GTEST_SKIP() << "under a sanitizer";
+    std::string model;
+    for (int i = 0; i < 200000; ++i) model += "v " + std::to_string(i) + " 0 " + std::to_string(i % 7) + "\n";
+    for (int i = 3; i <= 200000; ++i) model += "f -" + std::to_string(i) + " 1 " + std::to_string(i) + "\n";
+    spit(folder_.file("large.obj"), model);
+    const auto expect_refused = [&](void (*limit)()) {
+        const Outcome o = Process(folder_, {"render", "large.obj", "-o", "a.png"}, limit).wait();
+        EXPECT_EQ(o.signal, 0);
+        EXPECT_EQ(o.code, 4) << o.err;
+        EXPECT_NE(o.err.find("error: "), std::string::npos) << o.err;
+    };
+    expect_refused(limit_memory<(40 << 20)>);
+    expect_refused(limit_memory<(50 << 20)>);
+    expect_refused(limit_memory<(60 << 20)>);
+    expect_files({"large.obj"});
+}
+
 }  // namespace
 }  // namespace steradian::test

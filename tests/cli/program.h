@@ -31,6 +31,12 @@ void limit_files() {
     ::setrlimit(RLIMIT_FSIZE, &limit);
 }
 
+template <uint64_t kBytes>
+void limit_memory() {
+    const rlimit limit{kBytes, kBytes};
+    ::setrlimit(RLIMIT_AS, &limit);
+}
+
 inline void full_stdout() { ::dup2(::open("/dev/full", O_WRONLY), 1); }
 
 /// The program as a child process; output goes to files in `folder`, which is also its working directory.

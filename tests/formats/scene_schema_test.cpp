@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
+#include "base/names.h"
 #include "formats/json/document.h"
 #include "formats/scene_json/keys.h"
-#include "base/names.h"
 #include "support/support.h"
 
 namespace steradian::scene_json {

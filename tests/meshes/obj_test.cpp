@@ -270,13 +270,13 @@ TEST(Obj, NumbersThatAreNotFiniteDropTheirFaces) {
 }
 
 TEST(Obj, NumbersAreRoundedCorrectly) {
-    const Mesh mesh =
-        only_mesh(read_obj("v 0.1 16777217 1e-46\nv -1e-999 1e-45 3.4028235e38\nv 0.30000001192092895507812500001 " +
-                           std::string(100000, '1') + "e-99999 0." + std::string(1000000, '0') + "1\nf 1 2 3\n"));
+    const Mesh mesh = only_mesh(
+        read_obj("v 0.1 16777217 1e-46\nv -1e-999 1e-45 0\nvn 3.4028235e38 0 0\nv 0.30000001192092895507812500001 " +
+                 std::string(100000, '1') + "e-99999 0." + std::string(1000000, '0') + "1\nf 1//1 2//1 3//1\n"));
     EXPECT_EQ(mesh.positions[0], (Vec3{0.1f, 16777216.0f, 0.0f}));
     EXPECT_TRUE(std::signbit(mesh.positions[1].x));
     EXPECT_EQ(mesh.positions[1].y, 0x1p-149f);
-    EXPECT_EQ(mesh.positions[1].z, 0x1.fffffep127f);
+    EXPECT_EQ(mesh.normals[0].x, 0x1.fffffep127f);
     EXPECT_EQ(mesh.positions[2], (Vec3{0.3f, 1.1111111111111111f, 0}));
 }
 

@@ -1,5 +1,4 @@
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -294,8 +293,7 @@ TEST(Ply, BinaryErrorsHaveABytePosition) {
     EXPECT_EQ(read_ply(vertices.substr(0, vertices.size() - 1)).error().where.line, 5u);
 }
 
-TEST(Ply, CountsThatLieCostNoMemoryAndNoTime) {
-    const auto start = std::chrono::steady_clock::now();
+TEST(Ply, CountsThatLieAreKnownFromTheHeader) {
     for (const char* count : {"1000000000000", "18446744073709551615", "4294967295", "2147483648"})
         for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"})
             for (const char* element : {"vertex", "face", "other"})
@@ -305,9 +303,11 @@ TEST(Ply, CountsThatLieCostNoMemoryAndNoTime) {
                         header(format, (element == std::string("vertex") ? std::string() : std::string(kVertex3)) +
                                            "element " + element + " " + count + "\nproperty " + property + "\n") +
                         std::string(100, '\0');
-                    EXPECT_FALSE(read_ply(text).ok());
+                    const auto result = read_ply(text);
+                    ASSERT_FALSE(result.ok());
+                    // Known from the header, before anything is read: the place is that of the element's name.
+                    EXPECT_GT(result.error().where.line, 2u) << result.error().str();
                 }
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
 }
 
 TEST(Ply, HugeHeadersAreRefused) {

@@ -14,6 +14,7 @@ namespace steradian {
 namespace avx2 {
 namespace {
 #include "accel/kernels/simd_avx2.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 }  // namespace avx2

@@ -4,7 +4,8 @@
 
 // From here on functions are compiled for AVX-512.
 #if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,lzcnt,popcnt"))), apply_to = function)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,lzcnt,popcnt"))), \
+                             apply_to = function)
 #else
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,lzcnt,popcnt")
@@ -14,6 +15,7 @@ namespace steradian {
 namespace avx512 {
 namespace {
 #include "accel/kernels/simd_avx512.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 }  // namespace avx512

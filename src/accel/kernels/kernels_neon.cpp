@@ -6,6 +6,7 @@ namespace steradian {
 namespace neon {
 namespace {
 #include "accel/kernels/simd_neon.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 }  // namespace neon

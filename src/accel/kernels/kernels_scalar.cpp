@@ -4,6 +4,7 @@ namespace steradian {
 namespace scalar {
 namespace {
 #include "accel/kernels/simd_scalar.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 }  // namespace scalar

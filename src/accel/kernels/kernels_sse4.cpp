@@ -14,6 +14,7 @@ namespace steradian {
 namespace sse4 {
 namespace {
 #include "accel/kernels/simd_sse4.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 }  // namespace sse4

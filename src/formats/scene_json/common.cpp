@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/text.h"
 #include "base/names.h"
+#include "base/text.h"
 
 namespace steradian::scene_json {
 
