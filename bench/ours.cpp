@@ -41,10 +41,11 @@ class BatchTracer : public OurTracer {
 public:
     using OurTracer::OurTracer;
     void trace() override {
+        const RayKind kind = set_.coherent ? RayKind::coherent : RayKind::incoherent;
         if (set_.any_hit) {
-            accel_.occluded(rays(), occluded());
+            accel_.occluded(rays(), occluded(), kind);
         } else {
-            accel_.intersect(rays(), hits());
+            accel_.intersect(rays(), hits(), kind);
         }
     }
 };

@@ -176,14 +176,18 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
     }
 }
 
-void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits) const noexcept {
+void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits, RayKind kind) const noexcept {
     const FloatMode mode;
-    data_->kernels->intersect(data_->world, rays.data(), hits.data(), rays.size());
+    const Kernels& k = *data_->kernels;
+    (kind == RayKind::coherent ? k.intersect_coherent : k.intersect)(data_->world, rays.data(), hits.data(),
+                                                                     rays.size());
 }
 
-void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> result) const noexcept {
+void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> result, RayKind kind) const noexcept {
     const FloatMode mode;
-    data_->kernels->occluded(data_->world, rays.data(), result.data(), rays.size());
+    const Kernels& k = *data_->kernels;
+    (kind == RayKind::coherent ? k.occluded_coherent : k.occluded)(data_->world, rays.data(), result.data(),
+                                                                   rays.size());
 }
 
 void Accel::next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept {

@@ -61,6 +61,12 @@ struct AccelStatistics {
     double build_seconds = 0;
 };
 
+/// What the caller knows of the rays in a span; never changes an answer.
+enum class RayKind : uint8_t {
+    incoherent,
+    coherent,  ///< rays that follow each other go much the same way: camera rays, shadow rays towards one point
+};
+
 class Accel {
 public:
     /// Primitives with coordinates that are not finite or beyond kMaxCoordinate, or with a negative radius, are refused
@@ -76,9 +82,10 @@ public:
     ~Accel();
 
     /// hits.size() == rays.size(). A ray that hits nothing gets Hit{}.
-    void intersect(std::span<const Ray> rays, std::span<Hit> hits) const noexcept;
+    void intersect(std::span<const Ray> rays, std::span<Hit> hits, RayKind kind = RayKind::incoherent) const noexcept;
     /// 1 where any primitive lies within [tmin, tmax], else 0.
-    void occluded(std::span<const Ray> rays, std::span<uint8_t> result) const noexcept;
+    void occluded(std::span<const Ray> rays, std::span<uint8_t> result,
+                  RayKind kind = RayKind::incoherent) const noexcept;
     /// The hit that follows `after[i]` in the order (t, instance, prim) along the same ray; for cut-outs.
     void next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept;
 

@@ -15,10 +15,17 @@ struct BinaryNode {
     BinaryNode* child[2] = {};  ///< both or none
     uint32_t begin = 0, end = 0;
     uint32_t depth = 0;
-    /// Wide nodes and items that it takes to hold the subtree. Set by gather().
+    // The rest is set by gather().
+    /// Wide nodes and items that it takes to hold the subtree.
     uint32_t nodes = 0, items = 0;
+    /// Least cost of the subtree in at most i + 1 of a wide node's children.
+    float cost[kWidth - 1] = {};
+    /// How many of i + 2 children the left side gets at that cost; 0 when one child fewer is as good. The last one is
+    /// for a node of its own, with kWidth children.
+    uint8_t left_share[kWidth - 1] = {};
+    bool one_leaf = false;  ///< cheaper as one leaf than in any other way
 
-    bool is_leaf() const { return child[0] == nullptr; }
+    bool is_leaf() const { return child[0] == nullptr || one_leaf; }
 };
 
 /// Nodes in chunks that never move. Every task has a Source of its own, so that workers meet only over whole chunks.
@@ -51,6 +58,6 @@ private:
 };
 
 /// Gathers a binary tree into `out`; defined in gather.cpp.
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, bool blocks, Bvh& out);
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, const BvhOptions& options, Bvh& out);
 
 }  // namespace steradian

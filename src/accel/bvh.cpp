@@ -84,7 +84,7 @@ Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, C
     if (primitives.empty()) return out;
     BinaryBuilder builder(primitives, options, cancelled);
     BinaryNode& root = builder.run();
-    if (!cancelled.poll()) gather(root, primitives, options.blocks, out);
+    if (!cancelled.poll()) gather(root, primitives, options, out);
     return out;
 }
 

@@ -88,18 +88,22 @@ struct EdgeFunctions {
 
     /// False when the triangle is missed: when two weights have opposite signs, or all of them vanish.
     bool inside() const { return !((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) && u + v + w != 0; }
-    /// The candidate of a triangle that is not missed.
-    TriangleCandidate candidate(double d_z) const {
+    /// Of the second and third vertex, where the triangle is not missed: >= 0, and their sum is at most 1 exactly.
+    void weights(float& of_p1, float& of_p2) const {
         const double sum = u + v + w;
-        TriangleCandidate out;
-        out.t = static_cast<float>((u * z[0] + v * z[1] + w * z[2]) / (sum * d_z));
-        out.u = static_cast<float>(v / sum);
-        out.v = static_cast<float>(w / sum);
+        of_p1 = static_cast<float>(v / sum);
+        of_p2 = static_cast<float>(w / sum);
         // Both may have been rounded up; one float less of the larger one is enough.
-        if (double(out.u) + double(out.v) > 1) {
-            float& larger = out.u > out.v ? out.u : out.v;
+        if (double(of_p1) + double(of_p2) > 1) {
+            float& larger = of_p1 > of_p2 ? of_p1 : of_p2;
             larger = std::nextafter(larger, 0.0f);
         }
+    }
+    /// The candidate of a triangle that is not missed.
+    TriangleCandidate candidate(double d_z) const {
+        TriangleCandidate out;
+        out.t = static_cast<float>((u * z[0] + v * z[1] + w * z[2]) / ((u + v + w) * d_z));
+        weights(out.u, out.v);
         return out;
     }
 };

@@ -10,7 +10,7 @@ namespace steradian {
 
 /// Throws std::bad_alloc. Aligned to at least 64 bytes.
 void* allocate_large(size_t bytes);
-void free_large(void* memory) noexcept;
+void free_large(void* memory, size_t bytes) noexcept;
 
 template <class T>
 struct LargeAllocator {
@@ -22,7 +22,7 @@ struct LargeAllocator {
         if (count > size_t(-1) / sizeof(T)) throw std::bad_alloc();
         return static_cast<T*>(allocate_large(count * sizeof(T)));
     }
-    void deallocate(T* memory, size_t) noexcept { free_large(memory); }
+    void deallocate(T* memory, size_t count) noexcept { free_large(memory, count * sizeof(T)); }
     bool operator==(const LargeAllocator&) const = default;
     /// Elements are written before they are read, by several workers: nothing to initialise.
     template <class U>

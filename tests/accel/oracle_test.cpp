@@ -51,11 +51,11 @@ std::vector<Accel> build_all(const TestScene& scene) {
 
 /// Compares all answers of one variant; at most a few failures are written out.
 void compare(const TestScene& scene, const Variant& variant, const Accel& accel, const std::vector<Ray>& rays,
-             const std::vector<Hit>& expected) {
+             const std::vector<Hit>& expected, RayKind kind = RayKind::incoherent) {
     std::vector<Hit> hits(rays.size());
     std::vector<uint8_t> occluded(rays.size());
-    accel.intersect(rays, hits);
-    accel.occluded(rays, occluded);
+    accel.intersect(rays, hits, kind);
+    accel.occluded(rays, occluded, kind);
     size_t different = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         if (same_bits(hits[i], expected[i]) && (occluded[i] != 0) == expected[i].found()) continue;
@@ -98,6 +98,71 @@ TEST(Oracle, EveryBitOfEveryHit) {
     // The rays are not all misses.
     EXPECT_GT(hit, shot / 4);
     std::printf("%zu rays, %zu of them hit\n", shot, hit);
+}
+
+/// Bundles of rays that follow each other: from one point or from near each other, in nearly the same direction; with
+/// zeros of either sign, ranges cut short, and now and then a ray that belongs to no bundle or hits nothing by
+/// definition.
+std::vector<Ray> coherent_rays(const TestScene& scene, size_t bundles, uint64_t seed) {
+    constexpr size_t kBundle = 40;  // not a multiple of anything that a kernel likes
+    Random random(seed);
+    std::vector<Ray> rays;
+    for (const Ray& middle : hard_rays(scene, bundles, seed)) {
+        const double spread = random.decades(-6, -0.3),
+                     apart = random.below(2) ? 0 : scene.size * random.decades(-6, -1);
+        for (size_t i = 0; i < kBundle; ++i) {
+            Ray ray = middle;
+            ray.d = Vec3(Vec3d(middle.d) + Vec3d(random.in_cube(spread)) * length(Vec3d(middle.d)));
+            ray.o = Vec3(Vec3d(middle.o) + Vec3d(random.in_cube(1)) * apart);
+            if (random.below(20) == 0) ray.tmax = static_cast<float>(scene.size * random.unit());
+            if (random.below(100) == 0) ray.d = -ray.d;
+            if (random.below(200) == 0) ray.d = {};
+            rays.push_back(ray);
+        }
+    }
+    return rays;
+}
+
+TEST(Oracle, CoherentRays) {
+    const std::vector<TestScene> scenes = hard_scenes();
+    const size_t bundles = by_tier<size_t>(200, 10'000);
+    size_t hit = 0, shot = 0;
+    for (size_t s = 0; s < scenes.size(); ++s) {
+        const BruteForce brute(scenes[s]);
+        const std::vector<Accel> built = build_all(scenes[s]);
+        const std::vector<Ray> rays = coherent_rays(scenes[s], bundles, 31 + s);
+        std::vector<Hit> expected(rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+        for (size_t v = 0; v < built.size(); ++v)
+            compare(scenes[s], variants()[v], built[v], rays, expected, RayKind::coherent);
+        for (const Hit& h : expected) hit += h.found();
+        shot += rays.size();
+    }
+    EXPECT_GT(hit, shot / 4);
+}
+
+/// Spans of every length around the sizes that the kernels work in.
+TEST(Oracle, AnyNumberOfRays) {
+    TestScene scene("sphere");
+    scene.meshes.push_back(icosphere(3));
+    scene.finish(1);
+    const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
+    ASSERT_TRUE(accel);
+    const std::vector<Ray> rays = hard_rays(scene, 100, 5);
+    for (size_t count = 0; count <= rays.size(); ++count)
+        for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
+            const Hit untouched{1, 2, 3, 4, 5};
+            std::vector<Hit> hits(rays.size() + 1, untouched);
+            std::vector<uint8_t> occluded(rays.size() + 1, 7);
+            accel->intersect(std::span(rays).first(count), std::span(hits).first(count), kind);
+            accel->occluded(std::span(rays).first(count), std::span(occluded).first(count), kind);
+            for (size_t i = 0; i < count; ++i) {
+                ASSERT_TRUE(same_bits(hits[i], accel->intersect(rays[i]))) << count << " rays, ray " << i;
+                ASSERT_EQ(occluded[i], accel->occluded(rays[i]));
+            }
+            ASSERT_TRUE(same_bits(hits[count], untouched));
+            ASSERT_EQ(occluded[count], 7);
+        }
 }
 
 TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {

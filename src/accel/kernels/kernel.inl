@@ -71,17 +71,21 @@ inline void set_range(Flight& f) {
     f.limit = f.best.t < f.world.out ? f.best.t : kInfinity;
 }
 
-/// True when the query is done.
+/// A candidate whose t is settled and within the ray's range. False when another hit comes first.
 template <Mode kMode>
-inline bool offer(Flight& f, const Hit& candidate, Interval own) {
-    Hit hit = candidate;
-    if (!settle(candidate.t, own, f.world, hit.t) || !(hit.t >= f.tmin)) return false;
-    hit.instance = f.instance;
+inline bool accept(Flight& f, const Hit& hit) {
     if (!comes_before(hit, f.best)) return false;
     if (kMode == Mode::after && !comes_before(f.after, hit)) return false;
     f.best = hit;
     f.limit = hit.t < f.world.out ? hit.t : kInfinity;
-    return kMode == Mode::any;
+    return true;
+}
+
+/// True when the query is done.
+template <Mode kMode>
+inline bool offer(Flight& f, float t, float u, float v, uint32_t prim, Interval own) {
+    Hit hit{0, u, v, prim, f.instance};
+    return settle(t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, hit) && kMode == Mode::any;
 }
 
 /// What lies on top of the stack and can still hold what is sought. At the bottom lies kFinished.
@@ -115,6 +119,39 @@ inline void visit_node(Flight& f) {
     f.next = pop<kMode>(f);
 }
 
+/// One triangle of a block, the long way.
+template <Mode kMode>
+bool test_triangle(Flight& f, const TriangleBlock& block, uint32_t lane) {
+    const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
+    TriangleCandidate c;
+    if (block.prim[lane] == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
+    return offer<kMode>(f, c.t, c.u, c.v, block.prim[lane], slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
+}
+
+/// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
+inline uint32_t settle_block(const Flight& f, const TriangleBlock& block, Float4 t, uint32_t lanes, float settled[4]) {
+    Float4 in = Float4::all(-kInfinity), out = Float4::all(kInfinity);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Float4 a = Float4::load(block.vertex[0][axis]), b = Float4::load(block.vertex[1][axis]),
+                     c = Float4::load(block.vertex[2][axis]);
+        const Float4 lo = smaller(smaller(a, b), c), hi = larger(larger(a, b), c);
+        const Float4 o = Float4::all(f.o[axis]), inv_d = Float4::all(f.inv_d[axis]);
+        const bool negative = f.near_plane[axis] > f.far_plane[axis];
+        in = larger(((negative ? hi : lo) - o) * inv_d, in);
+        out = smaller(((negative ? lo : hi) - o) * inv_d, out);
+    }
+    out = out * Float4::all(kFarScale) + Float4::all(kFarPad);
+    lanes &= at_most(in, out);
+    const Float4 own = smaller(larger(t, in), out);
+    const Float4 both = smaller(larger(own, Float4::all(f.world.in)), Float4::all(f.world.out));
+    // + 0 turns -0 into 0, as in settle().
+    const Float4 result = both + Float4::all(0);
+    result.store(settled);
+    return lanes & at_most(Float4::all(f.tmin), result) & at_most(result, Float4::all(f.best.t)) &
+           at_most(result, Float4::all(std::numeric_limits<float>::max()));
+}
+
+/// intersect_triangle() for four triangles, operation by operation.
 template <Mode kMode>
 inline bool test_block(Flight& f, const TriangleBlock& block) {
     const TriangleRay& ray = f.triangle_ray;
@@ -129,23 +166,30 @@ inline bool test_block(Flight& f, const TriangleBlock& block) {
     const Double4 u = x[2] * y[1] - y[2] * x[1];
     const Double4 v = x[0] * y[2] - y[0] * x[2];
     const Double4 w = x[1] * y[0] - y[1] * x[0];
-    uint32_t maybe = not_negative(smaller(smaller(u, v), w)) | not_positive(larger(larger(u, v), w));
-    if (maybe == 0) [[likely]]
+    const Double4 least = smaller(smaller(u, v), w), largest = larger(larger(u, v), w);
+    const uint32_t not_below = not_negative(least), not_above = not_positive(largest);
+    uint32_t lanes = not_below | not_above;
+    if (lanes == 0) [[likely]]
         return false;
-    alignas(32) double us[4], vs[4], ws[4], zs[3][4];
+    // The sign of a difference that came out as 0 is still open.
+    if ((not_below & not_positive(least)) | (not_above & not_negative(largest))) [[unlikely]] {
+        for (; lanes; lanes &= lanes - 1)
+            if (test_triangle<kMode>(f, block, static_cast<uint32_t>(__builtin_ctz(lanes)))) return true;
+        return false;
+    }
+    const Double4 sum = u + v + w;
+    const Float4 t = to_floats((u * z[0] + v * z[1] + w * z[2]) / (sum * Double4::all(ray.d_z)));
+    alignas(16) float settled[4];
+    lanes = settle_block(f, block, t, lanes, settled);
+    if (lanes == 0) return false;
+    alignas(32) double us[4], vs[4], ws[4];
     u.store(us), v.store(vs), w.store(ws);
-    for (int i = 0; i < 3; ++i) z[i].store(zs[i]);
-    for (; maybe; maybe &= maybe - 1) {
-        const auto lane = static_cast<uint32_t>(__builtin_ctz(maybe));
-        if (block.prim[lane] == kNoHit) break;
-        const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
-        EdgeFunctions edges{us[lane], vs[lane], ws[lane], {zs[0][lane], zs[1][lane], zs[2][lane]}};
-        // The sign of a difference that came out as 0 is still open.
-        if (edges.u == 0 || edges.v == 0 || edges.w == 0) edges = edge_functions(ray, p0, p1, p2);
-        if (!edges.inside()) continue;
-        const TriangleCandidate c = edges.candidate(ray.d_z);
-        const Interval own = slab_interval(triangle_bounds(p0, p1, p2), f.slab());
-        if (offer<kMode>(f, {c.t, c.u, c.v, block.prim[lane], 0}, own)) return true;
+    for (; lanes; lanes &= lanes - 1) {
+        const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
+        if (block.prim[lane] == kNoHit || !accept<kMode>(f, {settled[lane], 0, 0, block.prim[lane], f.instance})) continue;
+        if (kMode == Mode::any) return true;
+        const EdgeFunctions edges{us[lane], vs[lane], ws[lane], {}};
+        edges.weights(f.best.u, f.best.v);
     }
     return false;
 }
@@ -154,20 +198,20 @@ template <Mode kMode>
 bool test_sphere(Flight& f, const SphereGeometry& sphere, uint32_t prim) {
     const SphereCandidates c = intersect_sphere(f.ray, sphere);
     for (int i = 0; i < c.count; ++i)
-        if (offer<kMode>(f, {c.t[i], 0, 0, prim, 0}, slab_interval(sphere_bounds(sphere), f.slab()))) return true;
+        if (offer<kMode>(f, c.t[i], 0, 0, prim, slab_interval(sphere_bounds(sphere), f.slab()))) return true;
     return false;
 }
 template <Mode kMode>
 bool test_rectangle(Flight& f, const RectangleGeometry& rectangle, uint32_t prim) {
     PlanarCandidate c;
     return intersect_rectangle(f.ray, rectangle, c) &&
-           offer<kMode>(f, {c.t, c.a, c.b, prim, 0}, slab_interval(rectangle_bounds(rectangle), f.slab()));
+           offer<kMode>(f, c.t, c.a, c.b, prim, slab_interval(rectangle_bounds(rectangle), f.slab()));
 }
 template <Mode kMode>
 bool test_disk(Flight& f, const DiskGeometry& disk, uint32_t prim) {
     PlanarCandidate c;
     return intersect_disk(f.ray, disk, c) &&
-           offer<kMode>(f, {c.t, c.a, c.b, prim, 0}, slab_interval(disk_bounds(disk), f.slab()));
+           offer<kMode>(f, c.t, c.a, c.b, prim, slab_interval(disk_bounds(disk), f.slab()));
 }
 
 /// One primitive that is not a triangle.
@@ -299,58 +343,72 @@ __attribute__((always_inline)) inline void prefetch(const Flight& f) {
     __builtin_prefetch(place + 192);
 }
 
-/// sink(index, hit) for every ray, in any order.
-///
-/// Rays that are at a node and rays that are at a leaf wait in two queues, because which of the two comes next for a ray
-/// is the one thing that a processor cannot guess.
-template <Mode kMode, class Sink>
-inline void trace(const World& world, const Ray* rays, const Hit* after, size_t count, Sink sink) {
-    constexpr uint32_t kInFlight = 32, kLeavesAtOnce = 24;
-    Flight flights[kInFlight];
-    Flight* at_node[kInFlight + 1];
-    Flight* elsewhere[kInFlight + 1];
-    uint32_t nodes = 0, others = 0;
-    const auto queue = [&](Flight& f) {
+/// Rays on their way, in two queues, because whether a ray is at a node or at a leaf next is the one thing that a
+/// processor cannot guess.
+template <uint32_t kCapacity>
+class Queues {
+public:
+    void add(Flight& f) {
         prefetch(f);
         const bool node = !ChildRef::is_leaf(f.next);
-        at_node[nodes] = elsewhere[others] = &f;
-        nodes += node, others += !node;
-    };
+        at_node_[nodes_] = elsewhere_[others_] = &f;
+        nodes_ += node, others_ += !node;
+    }
+    /// Until nothing is on its way; done(flight) may add another one.
+    template <Mode kMode, class Done>
+    void run(const World& world, Done done) {
+        constexpr uint32_t kOthersAtOnce = kCapacity * 3 / 4;
+        while (nodes_ + others_) {
+            while (nodes_ && others_ < kOthersAtOnce) {
+                const uint32_t waiting = nodes_;
+                nodes_ = 0;
+                for (uint32_t i = 0; i < waiting; ++i) {
+                    Flight& f = *at_node_[i];
+                    visit_node<kMode>(f);
+                    add(f);
+                }
+            }
+            const uint32_t waiting = others_;
+            others_ = 0;
+            for (uint32_t i = 0; i < waiting; ++i) {
+                Flight& f = *elsewhere_[i];
+                if (f.next != kFinished) {
+                    visit_other<kMode>(f, world);
+                    add(f);
+                } else {
+                    done(f);
+                }
+            }
+        }
+    }
+
+private:
+    uint32_t nodes_ = 0, others_ = 0;
+    Flight* at_node_[kCapacity + 1];
+    Flight* elsewhere_[kCapacity + 1];
+};
+
+inline constexpr uint32_t kInFlight = 32;
+
+/// sink(index, hit) for every ray, in any order.
+template <Mode kMode, class Sink>
+inline void trace(const World& world, const Ray* rays, const Hit* after, size_t count, Sink sink) {
+    Flight flights[kInFlight];
+    Queues<kInFlight> queues;
     size_t next = 0;
     const auto start = [&](Flight& f) {
         while (next < count) {
             const size_t i = next++;
-            if (launch<kMode>(f, world, rays[i], after ? after + i : nullptr, static_cast<uint32_t>(i))) {
-                queue(f);
-                return;
-            }
+            if (launch<kMode>(f, world, rays[i], after ? after + i : nullptr, static_cast<uint32_t>(i)))
+                return queues.add(f);
             sink(i, Hit{});
         }
     };
     for (Flight& f : flights) start(f);
-    while (nodes + others) {
-        while (nodes && others < kLeavesAtOnce) {
-            const uint32_t waiting = nodes;
-            nodes = 0;
-            for (uint32_t i = 0; i < waiting; ++i) {
-                Flight& f = *at_node[i];
-                visit_node<kMode>(f);
-                queue(f);
-            }
-        }
-        const uint32_t waiting = others;
-        others = 0;
-        for (uint32_t i = 0; i < waiting; ++i) {
-            Flight& f = *elsewhere[i];
-            if (f.next != kFinished) {
-                visit_other<kMode>(f, world);
-                queue(f);
-            } else {
-                sink(f.index, f.best.found() ? f.best : Hit{});
-                start(f);
-            }
-        }
-    }
+    queues.template run<kMode>(world, [&](Flight& f) {
+        sink(f.index, f.best.found() ? f.best : Hit{});
+        start(f);
+    });
 }
 
 template <Mode kMode>

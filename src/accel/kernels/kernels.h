@@ -16,6 +16,8 @@ struct Kernels {
     void (*intersect)(const World&, const Ray* rays, Hit* hits, size_t count) noexcept;
     void (*occluded)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
     void (*next_hit)(const World&, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept;
+    void (*intersect_coherent)(const World&, const Ray* rays, Hit* hits, size_t count) noexcept;
+    void (*occluded_coherent)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 };
 
 extern const Kernels kScalarKernels;

@@ -16,6 +16,7 @@ namespace {
 #include "accel/kernels/simd_avx2.inl"
 
 #include "accel/kernels/kernel.inl"
+#include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace avx2
 }  // namespace steradian
@@ -27,7 +28,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx2Kernels = {avx2::intersect, avx2::occluded, avx2::next_hit};
+const Kernels kAvx2Kernels = {avx2::intersect, avx2::occluded, avx2::next_hit, avx2::intersect_coherent,
+                              avx2::occluded_coherent};
 }
 
 #endif

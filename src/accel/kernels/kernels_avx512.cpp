@@ -17,6 +17,7 @@ namespace {
 #include "accel/kernels/simd_avx512.inl"
 
 #include "accel/kernels/kernel.inl"
+#include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace avx512
 }  // namespace steradian
@@ -28,7 +29,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx512Kernels = {avx512::intersect, avx512::occluded, avx512::next_hit};
+const Kernels kAvx512Kernels = {avx512::intersect, avx512::occluded, avx512::next_hit, avx512::intersect_coherent,
+                                avx512::occluded_coherent};
 }
 
 #endif

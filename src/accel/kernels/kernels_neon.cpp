@@ -8,12 +8,14 @@ namespace {
 #include "accel/kernels/simd_neon.inl"
 
 #include "accel/kernels/kernel.inl"
+#include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace neon
 }  // namespace steradian
 
 namespace steradian {
-const Kernels kNeonKernels = {neon::intersect, neon::occluded, neon::next_hit};
+const Kernels kNeonKernels = {neon::intersect, neon::occluded, neon::next_hit, neon::intersect_coherent,
+                              neon::occluded_coherent};
 }
 
 #endif

@@ -16,6 +16,7 @@ namespace {
 #include "accel/kernels/simd_sse4.inl"
 
 #include "accel/kernels/kernel.inl"
+#include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace sse4
 }  // namespace steradian
@@ -27,7 +28,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kSse4Kernels = {sse4::intersect, sse4::occluded, sse4::next_hit};
+const Kernels kSse4Kernels = {sse4::intersect, sse4::occluded, sse4::next_hit, sse4::intersect_coherent,
+                              sse4::occluded_coherent};
 }
 
 #endif

@@ -10,6 +10,7 @@ struct Float8 {
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
 inline Float8 operator-(Float8 a, Float8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
 inline Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+inline Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; }
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float8 larger(Float8 a, Float8 b) { return {_mm256_max_ps(a.v, b.v)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
@@ -17,6 +18,9 @@ inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
 inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }
+
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
 
 struct Double4 {
     __m256d v;
@@ -27,6 +31,8 @@ struct Double4 {
 inline Double4 operator+(Double4 a, Double4 b) { return {_mm256_add_pd(a.v, b.v)}; }
 inline Double4 operator-(Double4 a, Double4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+inline Double4 operator/(Double4 a, Double4 b) { return {_mm256_div_pd(a.v, b.v)}; }
+inline Float4 to_floats(Double4 a) { return {_mm256_cvtpd_ps(a.v)}; }
 inline Double4 larger(Double4 a, Double4 b) { return {_mm256_max_pd(a.v, b.v)}; }
 inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)}; }
 /// Bit i where a >= 0, or a <= 0, in lane i.
@@ -65,3 +71,5 @@ inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref), _mm256_permutevar8x32_epi32(child, places_of(met)));
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
+
+#include "accel/kernels/float16_pair.inl"

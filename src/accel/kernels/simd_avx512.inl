@@ -16,6 +16,9 @@ inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) { return _mm256_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
 
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
+
 struct Double4 {
     __m256d v;
     static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
@@ -25,6 +28,8 @@ struct Double4 {
 inline Double4 operator+(Double4 a, Double4 b) { return {_mm256_add_pd(a.v, b.v)}; }
 inline Double4 operator-(Double4 a, Double4 b) { return {_mm256_sub_pd(a.v, b.v)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {_mm256_mul_pd(a.v, b.v)}; }
+inline Double4 operator/(Double4 a, Double4 b) { return {_mm256_div_pd(a.v, b.v)}; }
+inline Float4 to_floats(Double4 a) { return {_mm256_cvtpd_ps(a.v)}; }
 inline Double4 larger(Double4 a, Double4 b) { return {_mm256_max_pd(a.v, b.v)}; }
 inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)}; }
 /// Bit i where a >= 0, or a <= 0, in lane i.
@@ -57,3 +62,20 @@ inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(met), child));
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
+
+struct Float16 {
+    __m512 v;
+    static Float16 load(const float* p) { return {_mm512_load_ps(p)}; }
+    static Float16 all(float x) { return {_mm512_set1_ps(x)}; }
+    void store(float* p) const { _mm512_store_ps(p, v); }
+};
+inline Float16 operator+(Float16 a, Float16 b) { return {_mm512_add_ps(a.v, b.v)}; }
+inline Float16 operator-(Float16 a, Float16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
+inline Float16 operator*(Float16 a, Float16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
+inline Float16 operator/(Float16 a, Float16 b) { return {_mm512_div_ps(a.v, b.v)}; }
+/// Of all lanes, none of which is NaN.
+inline float least(Float16 a) { return _mm512_reduce_min_ps(a.v); }
+inline float largest(Float16 a) { return _mm512_reduce_max_ps(a.v); }
+inline Float16 larger(Float16 a, Float16 b) { return {_mm512_max_ps(a.v, b.v)}; }
+inline Float16 smaller(Float16 a, Float16 b) { return {_mm512_min_ps(a.v, b.v)}; }
+inline uint32_t at_most(Float16 a, Float16 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }

@@ -10,6 +10,7 @@ struct Float8 {
 inline Float8 operator+(Float8 a, Float8 b) { return {vaddq_f32(a.lo, b.lo), vaddq_f32(a.hi, b.hi)}; }
 inline Float8 operator-(Float8 a, Float8 b) { return {vsubq_f32(a.lo, b.lo), vsubq_f32(a.hi, b.hi)}; }
 inline Float8 operator*(Float8 a, Float8 b) { return {vmulq_f32(a.lo, b.lo), vmulq_f32(a.hi, b.hi)}; }
+inline Float8 operator/(Float8 a, Float8 b) { return {vdivq_f32(a.lo, b.lo), vdivq_f32(a.hi, b.hi)}; }
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline float32x4_t larger(float32x4_t a, float32x4_t b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 inline float32x4_t smaller(float32x4_t a, float32x4_t b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
@@ -23,6 +24,9 @@ inline uint32_t at_most(Float8 a, Float8 b) {
     return vaddvq_u32(vorrq_u32(lo, hi));
 }
 
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
+
 struct Double4 {
     float64x2_t lo, hi;
     static Double4 of_floats(const float* p) {
@@ -35,6 +39,8 @@ struct Double4 {
 inline Double4 operator+(Double4 a, Double4 b) { return {vaddq_f64(a.lo, b.lo), vaddq_f64(a.hi, b.hi)}; }
 inline Double4 operator-(Double4 a, Double4 b) { return {vsubq_f64(a.lo, b.lo), vsubq_f64(a.hi, b.hi)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {vmulq_f64(a.lo, b.lo), vmulq_f64(a.hi, b.hi)}; }
+inline Double4 operator/(Double4 a, Double4 b) { return {vdivq_f64(a.lo, b.lo), vdivq_f64(a.hi, b.hi)}; }
+inline Float4 to_floats(Double4 a) { return {vcvt_high_f32_f64(vcvt_f32_f64(a.lo), a.hi)}; }
 inline float64x2_t larger(float64x2_t a, float64x2_t b) { return vbslq_f64(vcgtq_f64(a, b), a, b); }
 inline float64x2_t smaller(float64x2_t a, float64x2_t b) { return vbslq_f64(vcltq_f64(a, b), a, b); }
 inline Double4 larger(Double4 a, Double4 b) { return {larger(a.lo, b.lo), larger(a.hi, b.hi)}; }
@@ -48,4 +54,5 @@ inline uint32_t bits_of(uint64x2_t lo, uint64x2_t hi) {
 inline uint32_t not_negative(Double4 a) { return bits_of(vcgezq_f64(a.lo), vcgezq_f64(a.hi)); }
 inline uint32_t not_positive(Double4 a) { return bits_of(vclezq_f64(a.lo), vclezq_f64(a.hi)); }
 
+#include "accel/kernels/float16_pair.inl"
 #include "accel/kernels/push_met.inl"

@@ -40,6 +40,10 @@ template <class T, int kLanes>
 inline Lanes<T, kLanes> operator*(const Lanes<T, kLanes>& a, const Lanes<T, kLanes>& b) {
     return per_lane(a, b, [](T x, T y) { return x * y; });
 }
+template <class T, int kLanes>
+inline Lanes<T, kLanes> operator/(const Lanes<T, kLanes>& a, const Lanes<T, kLanes>& b) {
+    return per_lane(a, b, [](T x, T y) { return x / y; });
+}
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 template <class T, int kLanes>
 inline Lanes<T, kLanes> larger(const Lanes<T, kLanes>& a, const Lanes<T, kLanes>& b) {
@@ -51,11 +55,18 @@ inline Lanes<T, kLanes> smaller(const Lanes<T, kLanes>& a, const Lanes<T, kLanes
 }
 using Float8 = Lanes<float, 8>;
 using Double4 = Lanes<double, 4>;
+using Float4 = Lanes<float, 4>;
+inline Float4 to_floats(const Double4& a) {
+    Float4 out;
+    for (int i = 0; i < 4; ++i) out.v[i] = static_cast<float>(a.v[i]);
+    return out;
+}
 
 /// Bit i where a <= b in lane i.
-inline uint32_t at_most(const Float8& a, const Float8& b) {
+template <int kLanes>
+inline uint32_t at_most(const Lanes<float, kLanes>& a, const Lanes<float, kLanes>& b) {
     uint32_t bits = 0;
-    for (int i = 0; i < 8; ++i) bits |= uint32_t(a.v[i] <= b.v[i]) << i;
+    for (int i = 0; i < kLanes; ++i) bits |= uint32_t(a.v[i] <= b.v[i]) << i;
     return bits;
 }
 /// Bit i where a >= 0, or a <= 0, in lane i.
@@ -70,4 +81,5 @@ inline uint32_t not_positive(const Double4& a) {
     return bits;
 }
 
+#include "accel/kernels/float16_pair.inl"
 #include "accel/kernels/push_met.inl"

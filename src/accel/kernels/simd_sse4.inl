@@ -10,6 +10,7 @@ struct Float8 {
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)}; }
 inline Float8 operator-(Float8 a, Float8 b) { return {_mm_sub_ps(a.lo, b.lo), _mm_sub_ps(a.hi, b.hi)}; }
 inline Float8 operator*(Float8 a, Float8 b) { return {_mm_mul_ps(a.lo, b.lo), _mm_mul_ps(a.hi, b.hi)}; }
+inline Float8 operator/(Float8 a, Float8 b) { return {_mm_div_ps(a.lo, b.lo), _mm_div_ps(a.hi, b.hi)}; }
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float8 larger(Float8 a, Float8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
@@ -18,6 +19,9 @@ inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) |
                                  _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi)) << 4);
 }
+
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
 
 struct Double4 {
     __m128d lo, hi;
@@ -31,6 +35,8 @@ struct Double4 {
 inline Double4 operator+(Double4 a, Double4 b) { return {_mm_add_pd(a.lo, b.lo), _mm_add_pd(a.hi, b.hi)}; }
 inline Double4 operator-(Double4 a, Double4 b) { return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)}; }
+inline Double4 operator/(Double4 a, Double4 b) { return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)}; }
+inline Float4 to_floats(Double4 a) { return {_mm_movelh_ps(_mm_cvtpd_ps(a.lo), _mm_cvtpd_ps(a.hi))}; }
 inline Double4 larger(Double4 a, Double4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
 inline Double4 smaller(Double4 a, Double4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
 /// Bit i where a >= 0, or a <= 0, in lane i.
@@ -45,4 +51,5 @@ inline uint32_t not_positive(Double4 a) {
                                  _mm_movemask_pd(_mm_cmple_pd(a.hi, zero)) << 2);
 }
 
+#include "accel/kernels/float16_pair.inl"
 #include "accel/kernels/push_met.inl"
