@@ -13,18 +13,20 @@ namespace steradian {
 
 namespace {
 
+/// The levels and what they refer to.
 struct Built {
-    std::vector<BuiltGeometry> geometries;
-    std::vector<GeometryView> views;
+    Level upper;
+    std::vector<TrianglePart> parts;
     std::vector<PlacedGeometry> instances;
-    Bvh bvh;  ///< over the instances that have anything in them
+    std::vector<Level> levels;  ///< by geometry; empty for those that are on the upper level, or nowhere
+    std::vector<LevelView> views;
+    std::vector<ShapesView> shapes;
 
     World world() const {
         World w;
-        if (bvh.nodes.empty()) return w;
-        w.nodes = bvh.nodes.data(), w.order = bvh.order.data();
-        w.instances = instances.data(), w.geometries = views.data();
-        if (bvh.order.size() == 1 && instances[bvh.order[0]].identity) w.only = bvh.order[0];
+        w.upper = upper.view();
+        w.parts = parts.data(), w.part_count = static_cast<uint32_t>(parts.size());
+        w.instances = instances.data(), w.levels = views.data(), w.shapes = shapes.data();
         return w;
     }
 };
@@ -51,8 +53,12 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
                      {},
                      {},
                      {}};
-    if (instances.size() >= ChildRef::kMaxItems)
-        return Error{ErrorCode::resources, std::to_string(instances.size()) + " instances are too many", {}, {}, {}};
+    size_t items = instances.size();
+    for (const Geometry& g : geometries) items += primitive_count(g);
+    if (items >= ChildRef::kMaxItems)
+        return make_error(ErrorCode::resources, std::to_string(items) +
+                                                    " primitives and instances, more than the limit of " +
+                                                    std::to_string(ChildRef::kMaxItems - 1));
     for (size_t i = 0; i < instances.size(); ++i)
         if (instances[i].geometry >= geometries.size())
             return Error{ErrorCode::bad_input,
@@ -64,81 +70,111 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
     return Ok{};
 }
 
-Status build_geometries(std::span<const Geometry> geometries, const AccelOptions& options, Cancellation& cancelled,
-                        Built& world) {
-    world.geometries.reserve(geometries.size());
-    for (size_t i = 0; i < geometries.size(); ++i) {
-        Result<std::vector<BuildPrimitive>> boxes = primitive_bounds(geometries[i], i);
-        if (!boxes) return boxes.error();
+/// Geometries that are on the upper level: in one place only, and not transformed. (In several places they would be
+/// copied.)
+std::vector<bool> upper_geometries(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances) {
+    std::vector<uint32_t> uses(geometries.size());
+    std::vector<bool> upper(geometries.size());
+    for (const GeometryInstance& i : instances) {
+        upper[i.geometry] = uses[i.geometry]++ == 0 && is_identity(i.world_from_object);
+    }
+    return upper;
+}
+
+ItemKind kind_of(const Geometry& geometry) {
+    return std::holds_alternative<TriangleGeometry>(geometry) ? ItemKind::block : ItemKind::shape;
+}
+
+BvhOptions bvh_options(const AccelOptions& options, ItemKind mostly) {
+    return {options.builder, options.max_depth, mostly};
+}
+
+/// The hierarchies of the geometries that are not on the upper level; that these are sound is checked as well.
+Status build_levels(std::span<const Geometry> geometries, const std::vector<bool>& upper, const AccelOptions& options,
+                    Cancellation& cancelled, Built& built) {
+    built.levels.resize(geometries.size());
+    for (uint32_t i = 0; i < geometries.size(); ++i) {
+        built.shapes.push_back(shapes_of(geometries[i]));
+        if (upper[i]) continue;
+        std::vector<BuildPrimitive> primitives;
+        if (Status status = append_primitives(geometries[i], i, 0, primitives); !status) return status;
         if (cancelled.poll()) return cancelled_error();
-        world.geometries.push_back(build_geometry(geometries[i], *boxes, options, cancelled));
+        const LevelPart part{0, kNoHit, i};
+        built.levels[i] = build_level(primitives, geometries, {&part, 1}, kNoHit,
+                                      bvh_options(options, kind_of(geometries[i])), cancelled);
         if (cancelled.poll()) return cancelled_error();
     }
-    for (const BuiltGeometry& g : world.geometries) world.views.push_back(view_of(g));
+    for (const Level& level : built.levels) built.views.push_back(level.view());
     return Ok{};
 }
 
-Status place_instances(std::span<const GeometryInstance> instances, Built& world) {
-    world.instances.reserve(instances.size());
-    for (size_t i = 0; i < instances.size(); ++i) {
-        const auto& [geometry, transform] = instances[i];
-        const Box& bounds = world.geometries[geometry].bvh.bounds;
-        const std::optional<PlacedGeometry> placed = place(geometry, transform, bounds);
-        if (!placed)
-            return Error{ErrorCode::bad_input,
-                         "instance " + std::to_string(i) +
-                             ": the transform is singular, not finite or scales beyond 1e30 or 1e-30",
-                         {},
-                         {},
-                         {}};
-        // A transformed box may be larger than what is in it, by sqrt(3) at most for rotations.
-        const float extent = max_of(max_component(abs(placed->world.lo)), max_component(abs(placed->world.hi)));
-        if (!bounds.empty() && !(extent <= 2 * kMaxCoordinate))
-            return Error{ErrorCode::bad_input,
-                         "instance " + std::to_string(i) + ": the transform puts it beyond coordinates of 1e15",
-                         {},
-                         {},
-                         {}};
-        world.instances.push_back(*placed);
-    }
-    return Ok{};
+Result<PlacedGeometry> place_instance(size_t index, const GeometryInstance& instance, const Box& bounds) {
+    const std::optional<PlacedGeometry> placed = place(instance.geometry, instance.world_from_object, bounds);
+    if (!placed)
+        return make_error(ErrorCode::bad_input,
+                          "instance " + std::to_string(index) +
+                              ": the transform is singular, not finite or scales beyond 1e30 or 1e-30");
+    // A transformed box may be larger than what is in it, by sqrt(3) at most for rotations.
+    const float extent = max_of(max_component(abs(placed->world.lo)), max_component(abs(placed->world.hi)));
+    if (!bounds.empty() && !(extent <= 2 * kMaxCoordinate))
+        return make_error(ErrorCode::bad_input,
+                          "instance " + std::to_string(index) + ": the transform puts it beyond coordinates of 1e15");
+    return *placed;
 }
 
-/// The upper level, over the instances that have something in them.
-void build_top(const AccelOptions& options, Cancellation& cancelled, Built& world) {
-    std::vector<BuildPrimitive> boxes;
-    for (size_t i = 0; i < world.instances.size(); ++i) {
-        if (world.instances[i].world.empty()) continue;
-        boxes.emplace_back(world.instances[i].world, static_cast<uint32_t>(i));
+/// The upper level, over the primitives that are in place and the instances of everything else.
+Status build_upper(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                   const std::vector<bool>& upper, const AccelOptions& options, Cancellation& cancelled, Built& built) {
+    size_t count = 0;
+    for (const GeometryInstance& i : instances)
+        count += upper[i.geometry] ? primitive_count(geometries[i.geometry]) : 1;
+    std::vector<BuildPrimitive> primitives;
+    primitives.reserve(count);
+    std::vector<LevelPart> parts;
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+        const uint32_t geometry = instances[i].geometry;
+        if (!upper[geometry]) continue;
+        const auto first = static_cast<uint32_t>(primitives.size());
+        if (Status status = append_primitives(geometries[geometry], geometry, first, primitives); !status)
+            return status;
+        if (primitives.size() == first) continue;
+        parts.push_back({first, i, geometry});
+        built.parts.push_back({first, i});
+        if (cancelled.poll()) return cancelled_error();
     }
-    BvhOptions how;
-    how.builder = options.builder;
-    how.max_depth = options.max_depth;
-    how.item_cost = 8;  // an instance is a transform and a hierarchy of its own: leaves with one are best
-    world.bvh = build_bvh(boxes, how, cancelled);
+    const auto first_instance = static_cast<uint32_t>(primitives.size());
+    ItemKind mostly = parts.empty() ? ItemKind::instance : ItemKind::shape;
+    for (const LevelPart& part : parts)
+        if (kind_of(geometries[part.geometry]) == ItemKind::block) mostly = ItemKind::block;
+    built.instances.reserve(instances.size());
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+        const Box bounds = built.levels[instances[i].geometry].bounds;
+        Result<PlacedGeometry> placed = place_instance(i, instances[i], bounds);
+        if (!placed) return placed.error();
+        built.instances.push_back(*placed);
+        if (!bounds.empty()) primitives.emplace_back(placed->world, first_instance + i, ItemKind::instance);
+    }
+    built.upper = build_level(primitives, geometries, parts, first_instance, bvh_options(options, mostly), cancelled);
+    return cancelled.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 
 template <class Array>
 uint64_t bytes_of(const Array& v) {
     return v.capacity() * sizeof(v[0]);
 }
-uint64_t bytes_of(const Bvh& bvh) { return bytes_of(bvh.nodes) + bytes_of(bvh.order); }
-
-AccelStatistics count(const Built& world) {
+AccelStatistics count(std::span<const Geometry> geometries, const Built& built) {
     AccelStatistics s;
-    const auto add = [&](const Bvh& bvh) {
-        s.nodes += bvh.nodes.size();
-        s.leaves += bvh.leaves;
-        s.bytes += bytes_of(bvh);
+    const auto add = [&](const Level& level) {
+        s.nodes += level.nodes.size();
+        s.leaves += level.leaves;
+        s.depth = max_of(s.depth, level.depth);
+        s.bytes += bytes_of(level.nodes) + bytes_of(level.blocks) + bytes_of(level.entries);
     };
-    for (const BuiltGeometry& g : world.geometries) {
-        s.primitives += g.count;
-        s.depth = max_of(s.depth, g.bvh.depth);
-        add(g.bvh);
-        if (const auto* blocks = std::get_if<LargeArray<TriangleBlock>>(&g.primitives)) s.bytes += bytes_of(*blocks);
-    }
-    add(world.bvh);
-    s.bytes += bytes_of(world.geometries) + bytes_of(world.instances);
+    for (const Geometry& g : geometries) s.primitives += primitive_count(g);
+    for (const Level& level : built.levels) add(level);
+    add(built.upper);
+    s.bytes += bytes_of(built.levels) + bytes_of(built.views) + bytes_of(built.shapes) + bytes_of(built.parts) +
+               bytes_of(built.instances);
     return s;
 }
 
@@ -160,12 +196,12 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         Cancellation cancelled(options.cancelled);
         auto data = std::make_unique<Data>();
         data->kernels = *kernels;
-        if (Status status = build_geometries(geometries, options, cancelled, data->built); !status)
+        const std::vector<bool> upper = upper_geometries(geometries, instances);
+        Built& built = data->built;
+        if (Status status = build_levels(geometries, upper, options, cancelled, built); !status) return status.error();
+        if (Status status = build_upper(geometries, instances, upper, options, cancelled, built); !status)
             return status.error();
-        if (Status status = place_instances(instances, data->built); !status) return status.error();
-        build_top(options, cancelled, data->built);
-        if (cancelled.poll()) return cancelled_error();
-        data->statistics = count(data->built);
+        data->statistics = count(geometries, built);
         data->statistics.bytes += sizeof(Data);
         data->world = data->built.world();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
@@ -207,7 +243,7 @@ bool Accel::occluded(const Ray& ray) const noexcept {
     return result != 0;
 }
 
-Accel::Bounds Accel::bounds() const noexcept { return {data_->built.bvh.bounds.lo, data_->built.bvh.bounds.hi}; }
+Accel::Bounds Accel::bounds() const noexcept { return {data_->built.upper.bounds.lo, data_->built.upper.bounds.hi}; }
 
 const AccelStatistics& Accel::statistics() const noexcept { return data_->statistics; }
 

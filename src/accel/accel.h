@@ -73,7 +73,7 @@ public:
     /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
     /// geometries that do not exist; a transform that is singular, scales beyond 1e±30 or leads beyond kMaxCoordinate.
     /// `usage` for a max_depth out of range or an instruction set that the machine lacks, `resources` when memory runs
-    /// out or a geometry has 2^28 primitives or more, `render_failed` when cancelled. Uses the workers of the caller's
+    /// out or there are 2^27 primitives or more, `render_failed` when cancelled. Uses the workers of the caller's
     /// arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});

@@ -16,14 +16,15 @@ struct BinaryNode {
     uint32_t begin = 0, end = 0;
     uint32_t depth = 0;
     // The rest is set by gather().
-    /// Wide nodes and items that it takes to hold the subtree.
-    uint32_t nodes = 0, items = 0;
+    /// Wide nodes, blocks and entries that it takes to hold the subtree.
+    uint32_t nodes = 0, blocks = 0, entries = 0;
     /// Least cost of the subtree in at most i + 1 of a wide node's children.
     float cost[kWidth - 1] = {};
     /// How many of i + 2 children the left side gets at that cost; 0 when one child fewer is as good. The last one is
     /// for a node of its own, with kWidth children.
     uint8_t left_share[kWidth - 1] = {};
     bool one_leaf = false;  ///< cheaper as one leaf than in any other way
+    bool one_kind = true;
 
     bool is_leaf() const { return child[0] == nullptr || one_leaf; }
 };
@@ -58,6 +59,6 @@ private:
 };
 
 /// Gathers a binary tree into `out`; defined in gather.cpp.
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, const BvhOptions& options, Bvh& out);
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Bvh& out);
 
 }  // namespace steradian

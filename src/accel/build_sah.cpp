@@ -109,7 +109,7 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {
 }
 
 std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                       const LeafCost& leaf_cost) {
+                                       ItemKind kind) {
     const Binning binning(bounds, primitives.size());
     const Area half_area_of(bounds);
     Bins bins;
@@ -124,14 +124,14 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
         for (uint32_t i = binning.count() - 1; i > 0; --i) {
             side.extend(bins.box[axis][i]);
             in_side += bins.count[axis][i];
-            right_cost[i] = in_side ? half_area_of(side) * leaf_cost(in_side) : 0.0f;
+            right_cost[i] = in_side ? half_area_of(side) * leaf_cost(kind, in_side) : 0.0f;
         }
         side = Box4{}, in_side = 0;
         for (uint32_t i = 1; i < binning.count(); ++i) {
             side.extend(bins.box[axis][i - 1]);
             in_side += bins.count[axis][i - 1];
             if (in_side == 0 || in_side == all) continue;
-            const float cost = half_area_of(side) * leaf_cost(in_side) + right_cost[i];
+            const float cost = half_area_of(side) * leaf_cost(kind, in_side) + right_cost[i];
             if (!best || cost < best->cost) best = SahSplit{cost, axis, i};
         }
     }

@@ -17,10 +17,7 @@ constexpr size_t kMaxSahLeaf = 8;
 class BinaryBuilder {
 public:
     BinaryBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled)
-        : primitives_(primitives),
-          options_(options),
-          cancelled_(cancelled),
-          leaf_cost_{options.item_cost, options.blocks} {}
+        : primitives_(primitives), options_(options), cancelled_(cancelled) {}
 
     BinaryNode& run() {
         BinaryPool::Source source(pool_);
@@ -36,44 +33,47 @@ private:
         out.box = bounds.box;
         out.begin = static_cast<uint32_t>(begin), out.end = static_cast<uint32_t>(end);
         out.depth = depth;
-        if (stop(range.size(), depth)) return;
         const Halves halves = split(range, bounds, depth);
         if (halves.left == 0) return;
+        depth += halves.by_kind ? 0 : 1;
         const size_t middle = begin + halves.left;
         for (BinaryNode*& child : out.child) child = source.next();
         if (range.size() >= kTaskGrain) {
-            parallel_invoke([&] { divide(*out.child[0], begin, middle, halves.bounds[0], depth + 1, source); },
+            parallel_invoke([&] { divide(*out.child[0], begin, middle, halves.bounds[0], depth, source); },
                             [&] {
                                 BinaryPool::Source own(pool_);
-                                divide(*out.child[1], middle, end, halves.bounds[1], depth + 1, own);
+                                divide(*out.child[1], middle, end, halves.bounds[1], depth, own);
                             });
         } else {
-            divide(*out.child[0], begin, middle, halves.bounds[0], depth + 1, source);
-            divide(*out.child[1], middle, end, halves.bounds[1], depth + 1, source);
+            divide(*out.child[0], begin, middle, halves.bounds[0], depth, source);
+            divide(*out.child[1], middle, end, halves.bounds[1], depth, source);
         }
-    }
-
-    bool stop(size_t count, uint32_t depth) {
-        const size_t small = options_.blocks ? kBlock : 1;
-        return count <= small || depth >= options_.max_depth || (count >= kTaskGrain && cancelled_.poll());
     }
 
     /// Nothing on the left: make a leaf.
     Halves split(std::span<BuildPrimitive> range, const RangeBounds& bounds, uint32_t depth) {
+        const bool last = depth >= options_.max_depth || (range.size() >= kTaskGrain && cancelled_.poll());
+        const bool few = range.size() <= kMaxSahLeaf;
+        ItemKind kind = options_.mostly;
+        if (last || few) {
+            const std::optional<ItemKind> only = only_kind(range);
+            if (!only) return split_by_kind(range);
+            kind = *only;
+        }
+        const size_t small = kind == ItemKind::block ? kBlock : 1;
+        if (last || range.size() <= small) return {};
         if (options_.builder == BvhBuilder::median) return split_median(range, bounds);
         // A balanced tree only just fits below: no more room for lopsided splits.
-        const size_t small = options_.blocks ? kBlock : 1;
         const auto levels = static_cast<uint32_t>(std::bit_width((range.size() - 1) / small));
         if (depth + levels >= options_.max_depth) return split_median(range, bounds);
-        const std::optional<SahSplit> best = find_sah_split(range, bounds, leaf_cost_);
-        if (range.size() <= kMaxSahLeaf && (!best || leaf_cost_(range.size()) <= 1 + best->cost)) return {};
+        const std::optional<SahSplit> best = find_sah_split(range, bounds, kind);
+        if (few && (!best || leaf_cost(kind, range.size()) <= 1 + best->cost)) return {};
         return best ? apply_sah_split(range, bounds, *best) : split_median(range, bounds);
     }
 
     std::span<BuildPrimitive> primitives_;
     const BvhOptions& options_;
     Cancellation& cancelled_;
-    LeafCost leaf_cost_;
     BinaryPool pool_;
 };
 
@@ -84,7 +84,7 @@ Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, C
     if (primitives.empty()) return out;
     BinaryBuilder builder(primitives, options, cancelled);
     BinaryNode& root = builder.run();
-    if (!cancelled.poll()) gather(root, primitives, options, out);
+    if (!cancelled.poll()) gather(root, primitives, out);
     return out;
 }
 

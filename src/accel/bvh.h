@@ -17,15 +17,16 @@ namespace steradian {
 
 /// Levels of splits below the root, at most.
 inline constexpr uint32_t kMaxBvhDepth = 64;
-/// Levels of nodes, at most: one for every split, and what it takes to gather a leaf of any size from runs of items.
-inline constexpr uint32_t kMaxNodeLevels = kMaxBvhDepth + 10;
+/// Levels of nodes, at most: one for every split, two to keep kinds apart, and what it takes to gather a leaf of any
+/// size from runs of items.
+inline constexpr uint32_t kMaxNodeLevels = kMaxBvhDepth + 12;
 
 /// The root is nodes[0]; no nodes when there was nothing to build over.
 struct Bvh {
     LargeArray<WideNode> nodes;
-    /// The primitives in the order of the leaves. A leaf's items are its entries here, or, when the leaves were padded
-    /// to blocks, blocks of kBlock entries that end with kNoHit where the leaf does not fill them.
-    std::vector<uint32_t> order;
+    /// Primitives in the order of the leaves: triangles as blocks of kBlock ids each, which end with kNoHit where a
+    /// leaf does not fill them, and the others one by one.
+    std::vector<uint32_t> blocks, entries;
     uint64_t leaves = 0;
     uint32_t depth = 0;  ///< splits above the deepest leaf, at most BvhOptions::max_depth
 
@@ -55,15 +56,14 @@ private:
 struct BvhOptions {
     BvhBuilder builder = BvhBuilder::sah;
     uint32_t max_depth = kMaxBvhDepth;
-    bool blocks = false;  ///< pad leaves to blocks of kBlock, and count blocks instead of primitives in the nodes
-    float item_cost = 1;  ///< of testing one item, against one for visiting a node
+    ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
 };
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the
-/// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. Uses all workers of the
-/// caller's arena; the result does not depend on their number. Check `cancelled.poll()` afterwards: what a cancelled
-/// build returns is unfinished. Throws std::bad_alloc. Fewer than ChildRef::kMaxItems boxes, all of them finite;
-/// reorders them.
+/// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. A leaf holds one kind.
+/// Uses all workers of the caller's arena; the result does not depend on their number. Check `cancelled.poll()`
+/// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. Fewer than ChildRef::kMaxItems
+/// boxes, all of them finite; reorders them.
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled);
 
 }  // namespace steradian

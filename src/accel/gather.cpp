@@ -44,11 +44,7 @@ Children children_of(const BinaryNode& parent) {
 
 class Gatherer {
 public:
-    Gatherer(std::span<const BuildPrimitive> primitives, const BvhOptions& options, Bvh& out)
-        : primitives_(primitives),
-          leaf_cost_{options.item_cost, options.blocks},
-          item_(options.blocks ? kBlock : 1),
-          out_(out) {}
+    Gatherer(std::span<const BuildPrimitive> primitives, Bvh& out) : primitives_(primitives), out_(out) {}
 
     void run(BinaryNode& root) {
         out_.bounds = root.box.box();
@@ -58,23 +54,34 @@ public:
         decide(root);
         const Totals totals = count(root);
         out_.nodes.resize(totals.nodes);
-        out_.order.resize(totals.items * item_);
+        out_.blocks.resize(size_t(totals.blocks) * kBlock);
+        out_.entries.resize(totals.entries);
         out_.leaves = totals.leaves, out_.depth = totals.depth;
-        fill(root, 0, 0);
+        fill(root, {0, 0, 0});
     }
 
 private:
     struct Totals {
-        uint32_t nodes = 0, items = 0, depth = 0;
+        uint32_t nodes = 0, blocks = 0, entries = 0, depth = 0;
         uint64_t leaves = 0;
 
         void add(const Totals& t) {
-            nodes += t.nodes, items += t.items, leaves += t.leaves;
+            nodes += t.nodes, blocks += t.blocks, entries += t.entries, leaves += t.leaves;
             depth = std::max(depth, t.depth);
         }
     };
 
-    uint32_t items_of(const BinaryNode& leaf) const { return (leaf.end - leaf.begin + item_ - 1) / item_; }
+    /// Where things go that are yet to be written.
+    struct Places {
+        uint32_t node, block, entry;
+    };
+
+    ItemKind kind_of(const BinaryNode& leaf) const { return primitives_[leaf.begin].kind; }
+    static uint32_t item_size(ItemKind kind) { return kind == ItemKind::block ? kBlock : 1; }
+    uint32_t items_of(const BinaryNode& leaf) const {
+        const uint32_t size = item_size(kind_of(leaf));
+        return (leaf.end - leaf.begin + size - 1) / size;
+    }
     /// Nodes that it takes to gather a leaf's items, kMaxRun to a run and kWidth runs or nodes to a node.
     static uint32_t nodes_for(uint32_t items) {
         if (items <= ChildRef::kMaxRun) return 0;
@@ -94,7 +101,7 @@ private:
     void decide(BinaryNode& node) {
         const float area = half_area((node.box.hi - node.box.lo) * scale_);
         const uint32_t primitives = node.end - node.begin;
-        const float as_leaf = area * leaf_cost_(primitives);
+        const float as_leaf = area * leaf_cost(kind_of(node), primitives);
         if (node.is_leaf()) {
             std::fill_n(node.cost, kWidth - 1, as_leaf);
             return;
@@ -105,6 +112,7 @@ private:
         } else {
             decide(l), decide(r);
         }
+        node.one_kind = l.one_kind && r.one_kind && kind_of(l) == kind_of(r);
         float best[kWidth + 1];
         for (uint32_t share = 2; share <= kWidth; ++share) {
             best[share] = kInfinity;
@@ -114,7 +122,7 @@ private:
             }
         }
         const float as_node = area + best[kWidth];
-        node.one_leaf = primitives <= kMaxMergedLeaf && as_leaf <= as_node;
+        node.one_leaf = node.one_kind && primitives <= kMaxMergedLeaf && as_leaf <= as_node;
         node.cost[0] = node.one_leaf ? as_leaf : as_node;
         for (uint32_t share = 2; share < kWidth; ++share) {
             node.cost[share - 1] = best[share];
@@ -136,14 +144,15 @@ private:
         each(root, children, [&](uint32_t i) {
             BinaryNode& child = *children.node[i];
             parts[i] = child.is_leaf() ? count_leaf(child) : count(child);
-            child.nodes = parts[i].nodes, child.items = parts[i].items;
+            child.nodes = parts[i].nodes, child.blocks = parts[i].blocks, child.entries = parts[i].entries;
         });
         for (uint32_t i = 0; i < children.count; ++i) totals.add(parts[i]);
         return totals;
     }
     Totals count_leaf(const BinaryNode& leaf) const {
         const uint32_t items = items_of(leaf);
-        return {nodes_for(items), items, leaf.depth, 1};
+        const bool blocks = kind_of(leaf) == ItemKind::block;
+        return {nodes_for(items), blocks ? items : 0, blocks ? 0 : items, leaf.depth, 1};
     }
 
     /// body(i) for every child, by several workers where that pays.
@@ -156,54 +165,58 @@ private:
         }
     }
 
-    /// Writes `root` as the wide node at `place`, what is below it behind, and its items from `item` on.
-    void fill(const BinaryNode& root, uint32_t place, uint32_t item) {
+    /// Writes `root` as the wide node at `at.node`, what is below it behind that, and its items from the other places
+    /// on.
+    void fill(const BinaryNode& root, Places at) {
         Children children = children_of(root);
         if (root.is_leaf()) children.node[0] = const_cast<BinaryNode*>(&root), children.count = 1;
-        uint32_t places[kWidth], items[kWidth];
-        uint32_t next_place = place + 1;
+        Places places[kWidth];
+        ++at.node;
+        const uint32_t own = at.node - 1;
         // Leaves first, so that the items of one node's leaves lie together.
         for (const bool leaves : {true, false})
             for (uint32_t i = 0; i < children.count; ++i) {
                 const BinaryNode& child = *children.node[i];
                 if (child.is_leaf() != leaves) continue;
-                places[i] = next_place, items[i] = item;
-                next_place += root.is_leaf() ? 0 : child.nodes;
-                item += child.is_leaf() ? items_of(child) : child.items;
+                places[i] = at;
+                at.node += child.nodes, at.block += child.blocks, at.entry += child.entries;
             }
         WideNode node = empty_node();
         each(root, children, [&](uint32_t i) {
             const BinaryNode& child = *children.node[i];
             set_box(node, i, child.box.box());
             if (child.is_leaf()) {
-                node.child[i] = fill_leaf(child, places[i], items[i]);
+                node.child[i] = fill_leaf(child, places[i]);
             } else {
-                node.child[i] = ChildRef::node(places[i]);
-                fill(child, places[i], items[i]);
+                node.child[i] = ChildRef::node(places[i].node);
+                fill(child, places[i]);
             }
         });
         finish(node, children.count);
-        out_.nodes[place] = node;
+        out_.nodes[own] = node;
     }
 
-    uint32_t fill_leaf(const BinaryNode& leaf, uint32_t place, uint32_t item) {
-        uint32_t* to = &out_.order[size_t(item) * item_];
+    uint32_t fill_leaf(const BinaryNode& leaf, Places at) {
+        const ItemKind kind = kind_of(leaf);
+        const uint32_t size = item_size(kind), items = items_of(leaf);
+        const uint32_t first = kind == ItemKind::block ? at.block : at.entry;
+        uint32_t* const begin = (kind == ItemKind::block ? out_.blocks : out_.entries).data() + size_t(first) * size;
+        uint32_t* to = begin;
         for (uint32_t i = leaf.begin; i < leaf.end; ++i) *to++ = primitives_[i].id;
-        const uint32_t items = items_of(leaf);
-        std::fill(to, &out_.order[0] + (size_t(item) + items) * item_, kNoHit);
-        return gather_items(leaf.begin, leaf.end, item, items, place);
+        std::fill(to, begin + size_t(items) * size, kNoHit);
+        return gather_items(leaf.begin, leaf.end, kind, first, items, at.node);
     }
 
     /// A run of items, or a node over several runs, at `place` and behind it; which moves on.
-    uint32_t gather_items(uint32_t begin, uint32_t end, uint32_t item, uint32_t items, uint32_t& place) {
-        if (items <= ChildRef::kMaxRun) return ChildRef::leaf(item, items);
-        const uint32_t own = place++, share = share_of(items);
+    uint32_t gather_items(uint32_t begin, uint32_t end, ItemKind kind, uint32_t item, uint32_t items, uint32_t& place) {
+        if (items <= ChildRef::kMaxRun) return ChildRef::leaf(kind, item, items);
+        const uint32_t own = place++, share = share_of(items), size = item_size(kind);
         WideNode node = empty_node();
         uint32_t children = 0;
         for (uint32_t first = 0; first < items; first += share, ++children) {
-            const uint32_t b = begin + first * item_, e = std::min(end, b + share * item_);
+            const uint32_t b = begin + first * size, e = std::min(end, b + share * size);
             set_box(node, children, range_bounds(primitives_.subspan(b, e - b)).box.box());
-            node.child[children] = gather_items(b, e, item + first, std::min(share, items - first), place);
+            node.child[children] = gather_items(b, e, kind, item + first, std::min(share, items - first), place);
         }
         finish(node, children);
         out_.nodes[own] = node;
@@ -246,16 +259,14 @@ private:
     }
 
     std::span<const BuildPrimitive> primitives_;
-    const LeafCost leaf_cost_;
-    const uint32_t item_;
     Float4 scale_;
     Bvh& out_;
 };
 
 }  // namespace
 
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, const BvhOptions& options, Bvh& out) {
-    Gatherer(primitives, options, out).run(root);
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Bvh& out) {
+    Gatherer(primitives, out).run(root);
 }
 
 }  // namespace steradian

@@ -1,5 +1,6 @@
 #include "accel/geometry.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,6 @@ namespace steradian {
 namespace {
 
 constexpr size_t kGrain = 16384;
-constexpr size_t kMaxPrimitives = ChildRef::kMaxItems - 1;
 
 // A coordinate just below the bound may be rounded outwards over it.
 bool within_bounds(const Box& box) {
@@ -27,23 +27,24 @@ Error bad_geometry(size_t geometry, const std::string& what) {
     return {ErrorCode::bad_input, "geometry " + std::to_string(geometry) + ": " + what, {}, {}, {}};
 }
 
-/// Fills boxes with box_of(i) and reports the first primitive for which that is nothing.
+/// Where the boxes of a geometry go.
+struct Target {
+    size_t geometry;
+    uint32_t first_id;
+    std::vector<BuildPrimitive>& out;
+};
+
+/// Appends box_of(i) for all i, or reports the first primitive for which that is nothing.
 template <class BoxOf>
-Result<std::vector<BuildPrimitive>> collect(size_t geometry, size_t count, const char* kind, BoxOf box_of) {
-    if (count > kMaxPrimitives)
-        return Error{ErrorCode::resources,
-                     "geometry " + std::to_string(geometry) + " has " + std::to_string(count) +
-                         " primitives, more than the limit of " + std::to_string(kMaxPrimitives),
-                     {},
-                     {},
-                     {}};
-    std::vector<BuildPrimitive> boxes(count);
+Status append(const Target& target, size_t count, ItemKind kind, const char* name, BoxOf box_of) {
+    const size_t start = target.out.size();
+    target.out.resize(start + count);
     std::atomic<size_t> first_bad{count};
     parallel_for(count, kGrain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             Box box;
             if (box_of(i, box) && within_bounds(box)) {
-                boxes[i] = {box, static_cast<uint32_t>(i)};
+                target.out[start + i] = {box, target.first_id + static_cast<uint32_t>(i), kind};
                 continue;
             }
             size_t seen = first_bad;
@@ -53,25 +54,26 @@ Result<std::vector<BuildPrimitive>> collect(size_t geometry, size_t count, const
         }
     });
     if (first_bad < count)
-        return bad_geometry(geometry,
-                            std::string(kind) + " " + std::to_string(first_bad) +
+        return bad_geometry(target.geometry,
+                            std::string(name) + " " + std::to_string(first_bad) +
                                 " has a size or coordinate that is not finite, negative where it must not be or "
                                 "beyond 1e15");
-    return boxes;
+    return Ok{};
 }
 
 // min_of and max_of may pass over a NaN, so a box alone does not show one.
 bool all_finite(Vec3 a, Vec3 b, Vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-Result<std::vector<BuildPrimitive>> bounds_of(const TriangleGeometry& mesh, size_t geometry) {
+Status append(const TriangleGeometry& mesh, const Target& target) {
     if (mesh.indices.size() % 3 != 0)
-        return bad_geometry(geometry, std::to_string(mesh.indices.size()) + " indices, expected a multiple of 3");
+        return bad_geometry(target.geometry,
+                            std::to_string(mesh.indices.size()) + " indices, expected a multiple of 3");
     for (size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= mesh.positions.size())
-            return bad_geometry(geometry, "triangle " + std::to_string(i / 3) + " has vertex " +
-                                              std::to_string(mesh.indices[i]) + ", but there are " +
-                                              std::to_string(mesh.positions.size()));
-    return collect(geometry, mesh.indices.size() / 3, "triangle", [&](size_t i, Box& box) {
+            return bad_geometry(target.geometry, "triangle " + std::to_string(i / 3) + " has vertex " +
+                                                     std::to_string(mesh.indices[i]) + ", but there are " +
+                                                     std::to_string(mesh.positions.size()));
+    return append(target, mesh.indices.size() / 3, ItemKind::block, "triangle", [&](size_t i, Box& box) {
         const Vec3 a = mesh.positions[mesh.indices[3 * i]], b = mesh.positions[mesh.indices[3 * i + 1]],
                    c = mesh.positions[mesh.indices[3 * i + 2]];
         box = triangle_bounds(a, b, c);
@@ -79,8 +81,8 @@ Result<std::vector<BuildPrimitive>> bounds_of(const TriangleGeometry& mesh, size
     });
 }
 
-Result<std::vector<BuildPrimitive>> bounds_of(std::span<const SphereGeometry> spheres, size_t geometry) {
-    return collect(geometry, spheres.size(), "sphere", [&](size_t i, Box& box) {
+Status append(std::span<const SphereGeometry> spheres, const Target& target) {
+    return append(target, spheres.size(), ItemKind::shape, "sphere", [&](size_t i, Box& box) {
         const SphereGeometry& s = spheres[i];
         if (!is_finite(s.center) || !(s.radius >= 0) || !is_finite(s.radius)) return false;
         box = sphere_bounds(s);
@@ -88,8 +90,8 @@ Result<std::vector<BuildPrimitive>> bounds_of(std::span<const SphereGeometry> sp
     });
 }
 
-Result<std::vector<BuildPrimitive>> bounds_of(std::span<const RectangleGeometry> rectangles, size_t geometry) {
-    return collect(geometry, rectangles.size(), "rectangle", [&](size_t i, Box& box) {
+Status append(std::span<const RectangleGeometry> rectangles, const Target& target) {
+    return append(target, rectangles.size(), ItemKind::shape, "rectangle", [&](size_t i, Box& box) {
         const RectangleGeometry& r = rectangles[i];
         if (!all_finite(r.center, r.half_u, r.half_v)) return false;
         box = rectangle_bounds(r);
@@ -97,8 +99,8 @@ Result<std::vector<BuildPrimitive>> bounds_of(std::span<const RectangleGeometry>
     });
 }
 
-Result<std::vector<BuildPrimitive>> bounds_of(std::span<const DiskGeometry> disks, size_t geometry) {
-    return collect(geometry, disks.size(), "disk", [&](size_t i, Box& box) {
+Status append(std::span<const DiskGeometry> disks, const Target& target) {
+    return append(target, disks.size(), ItemKind::shape, "disk", [&](size_t i, Box& box) {
         const DiskGeometry& d = disks[i];
         if (!all_finite(d.center, d.axis_u, d.axis_v)) return false;
         box = disk_bounds(d);
@@ -106,16 +108,38 @@ Result<std::vector<BuildPrimitive>> bounds_of(std::span<const DiskGeometry> disk
     });
 }
 
-LargeArray<TriangleBlock> pack(const TriangleGeometry& mesh, std::span<const uint32_t> order) {
-    LargeArray<TriangleBlock> blocks(order.size() / kBlock);
+Box shape_bounds(const Geometry& geometry, uint32_t prim) {
+    struct Bounds {
+        uint32_t prim;
+        Box operator()(const TriangleGeometry&) const { return {}; }
+        Box operator()(std::span<const SphereGeometry> s) const { return sphere_bounds(s[prim]); }
+        Box operator()(std::span<const RectangleGeometry> r) const { return rectangle_bounds(r[prim]); }
+        Box operator()(std::span<const DiskGeometry> d) const { return disk_bounds(d[prim]); }
+    };
+    return std::visit(Bounds{prim}, geometry);
+}
+
+/// The part to which an id belongs.
+const LevelPart& part_of(std::span<const LevelPart> parts, uint32_t id) {
+    return *(std::upper_bound(parts.begin(), parts.end(), id,
+                              [](uint32_t i, const LevelPart& part) { return i < part.first; }) -
+             1);
+}
+
+LargeArray<TriangleBlock> pack(std::span<const Geometry> geometries, std::span<const LevelPart> parts,
+                               std::span<const uint32_t> ids) {
+    LargeArray<TriangleBlock> blocks(ids.size() / kBlock);
     parallel_for(blocks.size(), kGrain / kBlock, [&](size_t begin, size_t end) {
         for (size_t b = begin; b < end; ++b)
             for (size_t lane = 0; lane < kBlock; ++lane) {
-                const uint32_t prim = order[b * kBlock + lane];
-                const size_t source = prim == kNoHit ? order[b * kBlock] : prim;
+                const uint32_t prim = ids[b * kBlock + lane];
+                const uint32_t source = prim == kNoHit ? ids[b * kBlock] : prim;
+                const LevelPart& part = part_of(parts, source);
+                const auto& mesh = std::get<TriangleGeometry>(geometries[part.geometry]);
+                const uint32_t* corners = &mesh.indices[3 * size_t(source - part.first)];
                 blocks[b].prim[lane] = prim;
                 for (size_t which = 0; which < 3; ++which) {
-                    const Vec3 p = mesh.positions[mesh.indices[3 * source + which]];
+                    const Vec3 p = mesh.positions[corners[which]];
                     for (int axis = 0; axis < 3; ++axis) blocks[b].vertex[which][axis][lane] = p[axis];
                 }
             }
@@ -125,48 +149,54 @@ LargeArray<TriangleBlock> pack(const TriangleGeometry& mesh, std::span<const uin
 
 }  // namespace
 
-Result<std::vector<BuildPrimitive>> primitive_bounds(const Geometry& geometry, size_t geometry_index) {
-    return std::visit([&](const auto& g) { return bounds_of(g, geometry_index); }, geometry);
+LevelView Level::view() const {
+    if (nodes.empty()) return {};
+    return {nodes.data(), blocks.data(), entries.data()};
 }
 
-BuiltGeometry build_geometry(const Geometry& geometry, std::span<BuildPrimitive> primitives,
-                             const AccelOptions& options, Cancellation& cancelled) {
-    const auto* mesh = std::get_if<TriangleGeometry>(&geometry);
-    BvhOptions how;
-    how.builder = options.builder;
-    how.max_depth = options.max_depth;
-    how.blocks = mesh != nullptr;
-    BuiltGeometry out;
-    out.count = primitives.size();
-    out.bvh = build_bvh(primitives, how, cancelled);
-    if (mesh) {
-        out.primitives = pack(*mesh, out.bvh.order);
-        out.bvh.order = {};
-        return out;
-    }
-    std::visit(
-        [&](const auto& g) {
-            if constexpr (!std::is_same_v<decltype(g), const TriangleGeometry&>) out.primitives = g;
+size_t primitive_count(const Geometry& geometry) {
+    return std::visit(
+        [](const auto& g) -> size_t {
+            if constexpr (std::is_same_v<decltype(g), const TriangleGeometry&>)
+                return g.indices.size() / 3;
+            else
+                return g.size();
         },
         geometry);
-    return out;
 }
 
-GeometryView view_of(const BuiltGeometry& geometry) {
-    GeometryView view;
-    if (geometry.bvh.nodes.empty()) return view;
-    view.nodes = geometry.bvh.nodes.data();
-    view.order = geometry.bvh.order.data();
-    struct Fill {
-        GeometryView& v;
-        void operator()(const LargeArray<TriangleBlock>& b) { v.kind = PrimitiveKind::triangles, v.blocks = b.data(); }
-        void operator()(std::span<const SphereGeometry> s) { v.kind = PrimitiveKind::spheres, v.spheres = s.data(); }
-        void operator()(std::span<const RectangleGeometry> r) {
-            v.kind = PrimitiveKind::rectangles, v.rectangles = r.data();
+Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
+                         std::vector<BuildPrimitive>& out) {
+    return std::visit([&](const auto& g) { return append(g, Target{geometry_index, first_id, out}); }, geometry);
+}
+
+Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
+                  std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
+                  Cancellation& cancelled) {
+    Bvh bvh = build_bvh(primitives, options, cancelled);
+    Level level;
+    level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
+    level.blocks = pack(geometries, parts, bvh.blocks);
+    level.entries.reserve(bvh.entries.size());
+    for (const uint32_t id : bvh.entries) {
+        if (id >= first_instance) {
+            level.entries.push_back({id - first_instance, 0, {}});
+        } else {
+            const LevelPart& part = part_of(parts, id);
+            const uint32_t prim = id - part.first;
+            level.entries.push_back({part.instance, prim, shape_bounds(geometries[part.geometry], prim)});
         }
-        void operator()(std::span<const DiskGeometry> d) { v.kind = PrimitiveKind::disks, v.disks = d.data(); }
-    };
-    std::visit(Fill{view}, geometry.primitives);
+    }
+    level.nodes = std::move(bvh.nodes);
+    return level;
+}
+
+ShapesView shapes_of(const Geometry& geometry) {
+    ShapesView view;
+    if (const auto* spheres = std::get_if<std::span<const SphereGeometry>>(&geometry)) view.spheres = spheres->data();
+    if (const auto* rectangles = std::get_if<std::span<const RectangleGeometry>>(&geometry))
+        view.rectangles = rectangles->data();
+    if (const auto* disks = std::get_if<std::span<const DiskGeometry>>(&geometry)) view.disks = disks->data();
     return view;
 }
 

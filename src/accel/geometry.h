@@ -1,33 +1,42 @@
-// One geometry as the kernels see it: its hierarchy and what its leaves hold.
+// From geometries to what hierarchies are built over, and from built hierarchies to what the leaves hold.
 #pragma once
 
 #include <span>
-#include <variant>
 #include <vector>
 
-#include "accel/accel.h"
 #include "accel/bvh.h"
 #include "accel/world.h"
 
 namespace steradian {
 
-struct BuiltGeometry {
-    Bvh bvh;
-    /// Triangles are packed in the order of the leaves (bvh.order is dropped then); the others are read through
-    /// bvh.order.
-    std::variant<LargeArray<TriangleBlock>, std::span<const SphereGeometry>, std::span<const RectangleGeometry>,
-                 std::span<const DiskGeometry>>
-        primitives;
-    uint64_t count = 0;
+/// A hierarchy with what its leaves hold.
+struct Level {
+    LargeArray<WideNode> nodes;
+    LargeArray<TriangleBlock> blocks;
+    std::vector<LeafEntry> entries;
+    Box bounds;
+    uint64_t leaves = 0;
+    uint32_t depth = 0;
+
+    LevelView view() const;
 };
 
-/// The box of every primitive of a geometry, or what is wrong with it (bad_input, resources).
-Result<std::vector<BuildPrimitive>> primitive_bounds(const Geometry& geometry, size_t geometry_index);
+/// A geometry whose primitives' ids begin at `first`, of an instance or of none.
+struct LevelPart {
+    uint32_t first, instance, geometry;
+};
 
-/// `primitives` come from primitive_bounds and are reordered. Unfinished when cancelled.
-BuiltGeometry build_geometry(const Geometry& geometry, std::span<BuildPrimitive> primitives,
-                             const AccelOptions& options, Cancellation& cancelled);
+size_t primitive_count(const Geometry& geometry);
+/// Appends the box of every primitive, with ids from `first_id` on; or says what is wrong with it (bad_input).
+Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
+                         std::vector<BuildPrimitive>& out);
 
-GeometryView view_of(const BuiltGeometry& geometry);
+/// `parts` are ascending and say whose the ids of blocks and shapes are; those of instances count from
+/// `first_instance`. Unfinished when cancelled. Reorders the primitives.
+Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
+                  std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
+                  Cancellation& cancelled);
+
+ShapesView shapes_of(const Geometry& geometry);
 
 }  // namespace steradian

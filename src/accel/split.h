@@ -7,19 +7,21 @@
 
 #include "accel/box.h"
 #include "accel/simd.h"
+#include "accel/wide_node.h"
 
 namespace steradian {
 
-/// What the builders move around: a box and whose it is. Two vectors of four floats, the id in the fourth of the first.
+/// What the builders move around: a box, whose it is and of what kind. Two vectors of four floats, with the rest in
+/// their fourth lanes.
 struct alignas(16) BuildPrimitive {
     float lo[3];
     uint32_t id;
     float hi[3];
-    uint32_t unused;
+    ItemKind kind;
 
     BuildPrimitive() = default;
-    BuildPrimitive(const Box& box, uint32_t id_)
-        : lo{box.lo.x, box.lo.y, box.lo.z}, id(id_), hi{box.hi.x, box.hi.y, box.hi.z}, unused(0) {}
+    BuildPrimitive(const Box& box, uint32_t id_, ItemKind kind_)
+        : lo{box.lo.x, box.lo.y, box.lo.z}, id(id_), hi{box.hi.x, box.hi.y, box.hi.z}, kind(kind_) {}
 
     /// Twice the centroid, which orders and bins as well as the centroid does.
     float centroid(int axis) const { return lo[axis] + hi[axis]; }
@@ -59,19 +61,24 @@ struct RangeBounds {
 };
 RangeBounds range_bounds(std::span<const BuildPrimitive> primitives);
 
-/// What a leaf with `count` primitives costs, in visits of a node.
-struct LeafCost {
-    float item_cost = 1;
-    bool blocks = false;
-
-    float operator()(size_t count) const { return item_cost * static_cast<float>(blocks ? (count + 3) / 4 : count); }
-};
+/// What a leaf with `count` primitives of a kind costs, in visits of a node. An instance is a transform and a hierarchy
+/// of its own.
+inline float leaf_cost(ItemKind kind, size_t count) {
+    const auto n = static_cast<float>(kind == ItemKind::block ? (count + 3) / 4 : count);
+    return kind == ItemKind::instance ? 8 * n : n;
+}
 
 /// What a split made of a range: how many are on the left, neither none nor all, and the bounds of both sides.
 struct Halves {
     size_t left = 0;
     RangeBounds bounds[2];
+    bool by_kind = false;  ///< not by place
 };
+
+/// Nothing when there are several kinds.
+std::optional<ItemKind> only_kind(std::span<const BuildPrimitive> primitives);
+/// Those of the first primitive's kind to the left. There must be several kinds.
+Halves split_by_kind(std::span<BuildPrimitive> primitives);
 
 /// Reorders the range around the median of (centroid, id) along the widest axis of the centroids: half are on the left.
 Halves split_median(std::span<BuildPrimitive> primitives, const RangeBounds& bounds);
@@ -82,9 +89,9 @@ struct SahSplit {
     int axis = 0;
     uint32_t bin = 0;  ///< the first one on the right
 };
-/// Nothing when all centroids coincide.
+/// Nothing when all centroids coincide. All primitives cost what those of `kind` do.
 std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                       const LeafCost& leaf_cost);
+                                       ItemKind kind);
 Halves apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split);
 
 }  // namespace steradian

@@ -7,19 +7,27 @@ namespace steradian {
 
 inline constexpr uint32_t kWidth = 8;
 
-/// What a child is, in 32 bits: the index of a node, or a run of up to kMaxRun items that follow each other.
-/// Items are blocks of triangles, or entries of an order of other primitives or instances.
+/// What leaves hold.
+enum class ItemKind : uint32_t { block, shape, instance };
+
+/// What a child is, in 32 bits: the index of a node, or a run of up to kMaxRun items of one kind that follow each
+/// other.
 class ChildRef {
 public:
-    static constexpr uint32_t kMaxRun = 8;
-    static constexpr uint32_t kMaxItems = 1u << 28;
+    static constexpr uint32_t kMaxRun = 4;
+    static constexpr uint32_t kMaxItems = 1u << 27;
     static constexpr uint32_t kLeaf = 1u << 31;
+    /// References from here on are leaves that do not hold blocks, or none at all.
+    static constexpr uint32_t kFirstOther = kLeaf | 1u << 29;
 
     static constexpr uint32_t node(uint32_t index) { return index; }
-    static constexpr uint32_t leaf(uint32_t first, uint32_t count) { return kLeaf | (count - 1) << 28 | first; }
+    static constexpr uint32_t leaf(ItemKind kind, uint32_t first, uint32_t count) {
+        return kLeaf | static_cast<uint32_t>(kind) << 29 | (count - 1) << 27 | first;
+    }
     static constexpr bool is_leaf(uint32_t ref) { return ref >= kLeaf; }
+    static constexpr ItemKind kind(uint32_t leaf_ref) { return static_cast<ItemKind>(leaf_ref >> 29 & 3); }
     static constexpr uint32_t first(uint32_t leaf_ref) { return leaf_ref & (kMaxItems - 1); }
-    static constexpr uint32_t count(uint32_t leaf_ref) { return (leaf_ref >> 28 & 7) + 1; }
+    static constexpr uint32_t count(uint32_t leaf_ref) { return (leaf_ref >> 27 & 3) + 1; }
 };
 
 /// Eight children, their boxes side by side for the slab test.

@@ -1,9 +1,6 @@
 // Everything that a query reads, in the form in which the kernels read it.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "accel/accel.h"
 #include "accel/instance.h"
 #include "accel/triangle_block.h"
@@ -11,29 +8,53 @@
 
 namespace steradian {
 
-enum class PrimitiveKind : uint32_t { triangles, spheres, rectangles, disks };
-
-/// One geometry: the root is nodes[0], and the leaves hold runs of blocks (triangles) or of entries of `order`.
-struct GeometryView {
-    const WideNode* nodes = nullptr;
-    PrimitiveKind kind = PrimitiveKind::triangles;
-    union {
-        const TriangleBlock* blocks = nullptr;
-        const SphereGeometry* spheres;
-        const RectangleGeometry* rectangles;
-        const DiskGeometry* disks;
-    };
-    const uint32_t* order = nullptr;
+/// A shape or an instance in a leaf. On the upper level `instance` is the index of the instance; within one it means
+/// nothing.
+struct LeafEntry {
+    uint32_t instance, prim;
+    Box own;  ///< of a shape; dear to compute
 };
 
-/// Two levels: the leaves of `nodes` hold runs of `order`, whose entries are instances that have something in them.
+/// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
+struct LevelView {
+    const WideNode* nodes = nullptr;
+    const TriangleBlock* blocks = nullptr;
+    const LeafEntry* entries = nullptr;
+};
+
+/// The shapes of one geometry; nothing for triangles, which are in blocks.
+struct ShapesView {
+    const SphereGeometry* spheres = nullptr;
+    const RectangleGeometry* rectangles = nullptr;
+    const DiskGeometry* disks = nullptr;
+};
+
+/// Triangles of the upper level whose ids begin at `first` belong to this instance.
+struct TrianglePart {
+    uint32_t first, instance;
+};
+
+/// Two levels. The upper one holds the primitives of every instance that is not transformed, all together, and the
+/// transformed instances; each of these leads to the hierarchy of its geometry.
 struct World {
-    const WideNode* nodes = nullptr;  ///< nullptr when there is nothing at all
-    const uint32_t* order = nullptr;
+    LevelView upper;
+    const TrianglePart* parts = nullptr;  ///< ascending
+    uint32_t part_count = 0;
     const PlacedGeometry* instances = nullptr;
-    const GeometryView* geometries = nullptr;
-    /// The one instance in use, where there is only one and it is not transformed: rays start in its hierarchy.
-    uint32_t only = kNoHit;
+    const LevelView* levels = nullptr;   ///< by geometry
+    const ShapesView* shapes = nullptr;  ///< by geometry
+
+    /// The instance of a triangle of the upper level; `id` becomes its primitive.
+    uint32_t identify(uint32_t& id) const {
+        uint32_t part = 0;
+        for (uint32_t n = part_count; n > 1;) {
+            const uint32_t half = n / 2;
+            part = parts[part + half].first <= id ? part + half : part;
+            n -= half;
+        }
+        id -= parts[part].first;
+        return parts[part].instance;
+    }
 };
 
 /// Order of hits along a ray: by t, then instance, then primitive.

@@ -98,7 +98,8 @@ private:
     void advance(uint32_t depth, Counters& counters) noexcept {
         const std::span<Hit> hits(hits_.data(), rays_.size());
         in_slices(rays_, [&](std::span<const Ray> rays, size_t first) {
-            c_.scene.accel.intersect(rays, hits.subspan(first, rays.size()));
+            const RayKind kind = depth == 0 ? RayKind::coherent : RayKind::incoherent;
+            c_.scene.accel.intersect(rays, hits.subspan(first, rays.size()), kind);
         });
         next_active_.clear();
         next_rays_.clear();
@@ -167,7 +168,7 @@ private:
     void trace_shadow_rays(Counters& counters) noexcept {
         const std::span<uint8_t> occluded(occluded_.data(), shadow_rays_.size());
         in_slices(shadow_rays_, [&](std::span<const Ray> rays, size_t first) {
-            c_.scene.accel.occluded(rays, occluded.subspan(first, rays.size()));
+            c_.scene.accel.occluded(rays, occluded.subspan(first, rays.size()), RayKind::coherent);
         });
         for (size_t i = 0; i < occluded.size(); ++i) {
             if (occluded[i]) continue;

@@ -21,15 +21,13 @@ struct alignas(64) Flight {
     float start, limit;  ///< boxes outside of it cannot hold what is sought
     uint32_t next;       ///< the child to look at next
     uint32_t depth;      ///< of the stack
-    const WideNode* nodes;
+    LevelView level;
 
-    uintptr_t leaves;              ///< address of the first block or entry of the current level
-    uintptr_t leaf_stride;         ///< bytes
-    const GeometryView* geometry;  ///< nullptr on the upper level
-    TriangleRay triangle_ray;
+    TriangleRay triangle_ray;  ///< computed when the first triangle is met, because it is dear
+    bool has_triangle_ray;
     Hit best, after;
     float tmin;
-    uint32_t instance;
+    uint32_t instance;  ///< whose level this is; kNoHit on the upper level
     Interval world;  ///< of the instance along the world's ray; the whole line where it is not transformed
     uint32_t index;  ///< of the ray in its batch
     Ray ray, world_ray;
@@ -59,7 +57,7 @@ inline void set_space(Flight& f, const Ray& ray) {
         f.far_plane[axis] = f.near_plane[axis] ^ sizeof(float[kWidth]);
         f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
     }
-    f.triangle_ray = TriangleRay(ray);
+    f.has_triangle_ray = false;
 }
 
 /// Inside a transformed instance t is clamped once more, and an end of the range that this can reach does not bound the
@@ -83,9 +81,8 @@ inline bool accept(Flight& f, const Hit& hit) {
 
 /// True when the query is done.
 template <Mode kMode>
-inline bool offer(Flight& f, float t, float u, float v, uint32_t prim, Interval own) {
-    Hit hit{0, u, v, prim, f.instance};
-    return settle(t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, hit) && kMode == Mode::any;
+inline bool offer(Flight& f, Hit hit, Interval own) {
+    return settle(hit.t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, hit) && kMode == Mode::any;
 }
 
 /// What lies on top of the stack and can still hold what is sought. At the bottom lies kFinished.
@@ -100,7 +97,7 @@ inline uint32_t pop(Flight& f) {
 /// nearest.
 template <Mode kMode>
 inline void visit_node(Flight& f) {
-    const WideNode& node = f.nodes[f.next];
+    const WideNode& node = f.level.nodes[f.next];
     const char* planes = reinterpret_cast<const char*>(&node);
     const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
     Float8 in = Float8::all(f.start), out = Float8::all(kInfinity);
@@ -119,13 +116,21 @@ inline void visit_node(Flight& f) {
     f.next = pop<kMode>(f);
 }
 
+/// Whose triangle an entry of a block is.
+inline void identify(const Flight& f, const World& world, uint32_t id, Hit& hit) {
+    hit.prim = id;
+    hit.instance = f.instance != kNoHit ? f.instance : world.identify(hit.prim);
+}
+
 /// One triangle of a block, the long way.
 template <Mode kMode>
-bool test_triangle(Flight& f, const TriangleBlock& block, uint32_t lane) {
+bool test_triangle(Flight& f, const World& world, const TriangleBlock& block, uint32_t lane) {
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     TriangleCandidate c;
     if (block.prim[lane] == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
-    return offer<kMode>(f, c.t, c.u, c.v, block.prim[lane], slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
+    Hit hit{c.t, c.u, c.v};
+    identify(f, world, block.prim[lane], hit);
+    return offer<kMode>(f, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
 }
 
 /// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
@@ -153,7 +158,7 @@ inline uint32_t settle_block(const Flight& f, const TriangleBlock& block, Float4
 
 /// intersect_triangle() for four triangles, operation by operation.
 template <Mode kMode>
-inline bool test_block(Flight& f, const TriangleBlock& block) {
+inline bool test_block(Flight& f, const World& world, const TriangleBlock& block) {
     const TriangleRay& ray = f.triangle_ray;
     const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
     const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
@@ -174,7 +179,7 @@ inline bool test_block(Flight& f, const TriangleBlock& block) {
     // The sign of a difference that came out as 0 is still open.
     if ((not_below & not_positive(least)) | (not_above & not_negative(largest))) [[unlikely]] {
         for (; lanes; lanes &= lanes - 1)
-            if (test_triangle<kMode>(f, block, static_cast<uint32_t>(__builtin_ctz(lanes)))) return true;
+            if (test_triangle<kMode>(f, world, block, static_cast<uint32_t>(__builtin_ctz(lanes)))) return true;
         return false;
     }
     const Double4 sum = u + v + w;
@@ -186,7 +191,10 @@ inline bool test_block(Flight& f, const TriangleBlock& block) {
     u.store(us), v.store(vs), w.store(ws);
     for (; lanes; lanes &= lanes - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
-        if (block.prim[lane] == kNoHit || !accept<kMode>(f, {settled[lane], 0, 0, block.prim[lane], f.instance})) continue;
+        if (block.prim[lane] == kNoHit) continue;
+        Hit hit{settled[lane]};
+        identify(f, world, block.prim[lane], hit);
+        if (!accept<kMode>(f, hit)) continue;
         if (kMode == Mode::any) return true;
         const EdgeFunctions edges{us[lane], vs[lane], ws[lane], {}};
         edges.weights(f.best.u, f.best.v);
@@ -194,60 +202,51 @@ inline bool test_block(Flight& f, const TriangleBlock& block) {
     return false;
 }
 
-template <Mode kMode>
-bool test_sphere(Flight& f, const SphereGeometry& sphere, uint32_t prim) {
-    const SphereCandidates c = intersect_sphere(f.ray, sphere);
-    for (int i = 0; i < c.count; ++i)
-        if (offer<kMode>(f, c.t[i], 0, 0, prim, slab_interval(sphere_bounds(sphere), f.slab()))) return true;
-    return false;
-}
-template <Mode kMode>
-bool test_rectangle(Flight& f, const RectangleGeometry& rectangle, uint32_t prim) {
-    PlanarCandidate c;
-    return intersect_rectangle(f.ray, rectangle, c) &&
-           offer<kMode>(f, c.t, c.a, c.b, prim, slab_interval(rectangle_bounds(rectangle), f.slab()));
-}
-template <Mode kMode>
-bool test_disk(Flight& f, const DiskGeometry& disk, uint32_t prim) {
-    PlanarCandidate c;
-    return intersect_disk(f.ray, disk, c) &&
-           offer<kMode>(f, c.t, c.a, c.b, prim, slab_interval(disk_bounds(disk), f.slab()));
-}
-
-/// One primitive that is not a triangle.
-template <Mode kMode>
-bool test_other(Flight& f, uint32_t prim) {
-    const GeometryView& g = *f.geometry;
-    switch (g.kind) {
-        case PrimitiveKind::spheres: return test_sphere<kMode>(f, g.spheres[prim], prim);
-        case PrimitiveKind::rectangles: return test_rectangle<kMode>(f, g.rectangles[prim], prim);
-        case PrimitiveKind::disks: return test_disk<kMode>(f, g.disks[prim], prim);
-        case PrimitiveKind::triangles: break;
-    }
-    return false;
-}
-
 /// True when the query is done.
 template <Mode kMode>
-inline bool visit_primitives(Flight& f) {
-    const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
-    const GeometryView& g = *f.geometry;
-    if (g.kind == PrimitiveKind::triangles) [[likely]] {
-        for (uint32_t b = first; b < first + count; ++b)
-            if (test_block<kMode>(f, g.blocks[b])) return true;
+bool test_shape(Flight& f, const ShapesView& shapes, uint32_t instance, const LeafEntry& entry) {
+    const uint32_t prim = entry.prim;
+    if (shapes.spheres) {
+        const SphereCandidates c = intersect_sphere(f.ray, shapes.spheres[prim]);
+        for (int i = 0; i < c.count; ++i)
+            if (offer<kMode>(f, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab()))) return true;
         return false;
     }
-    for (uint32_t i = first; i < first + count; ++i)
-        if (test_other<kMode>(f, g.order[i])) return true;
+    PlanarCandidate c;
+    const bool met = shapes.rectangles ? intersect_rectangle(f.ray, shapes.rectangles[prim], c)
+                                       : intersect_disk(f.ray, shapes.disks[prim], c);
+    return met && offer<kMode>(f, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab()));
+}
+
+/// A run of blocks. True when the query is done.
+template <Mode kMode>
+inline bool visit_blocks(Flight& f, const World& world, uint32_t ref) {
+    if (!f.has_triangle_ray) {
+        f.triangle_ray = TriangleRay(f.ray);
+        f.has_triangle_ray = true;
+    }
+    const TriangleBlock* block = f.level.blocks + ChildRef::first(ref);
+    for (const TriangleBlock* end = block + ChildRef::count(ref); block < end; ++block)
+        if (test_block<kMode>(f, world, *block)) return true;
+    return false;
+}
+
+/// A run of shapes. True when the query is done.
+template <Mode kMode>
+inline bool visit_shapes(Flight& f, const World& world, uint32_t ref) {
+    const LeafEntry* entry = f.level.entries + ChildRef::first(ref);
+    for (const LeafEntry* end = entry + ChildRef::count(ref); entry < end; ++entry) {
+        const uint32_t instance = f.instance != kNoHit ? f.instance : entry->instance;
+        if (test_shape<kMode>(f, world.shapes[world.instances[instance].geometry], instance, *entry)) return true;
+    }
     return false;
 }
 
 template <Mode kMode>
 inline void to_upper_level(Flight& f, const World& world) {
-    f.geometry = nullptr;
-    f.nodes = world.nodes;
-    f.leaves = reinterpret_cast<uintptr_t>(world.order);
-    f.leaf_stride = sizeof(uint32_t);
+    f.instance = kNoHit;
+    f.level = world.upper;
+    f.world = {};
     set_range<kMode>(f);
 }
 
@@ -255,23 +254,16 @@ inline void to_upper_level(Flight& f, const World& world) {
 template <Mode kMode>
 bool enter(Flight& f, const World& world, uint32_t instance) {
     const PlacedGeometry& placed = world.instances[instance];
-    f.world = {};
+    Interval range;
     if (!placed.identity) {
         Ray object_ray;
-        f.world = slab_interval(placed.world, SlabRay(f.world_ray));
-        if (f.world.empty() || !placed.to_object(f.world_ray, object_ray)) {
-            f.world = {};
-            return false;
-        }
+        range = slab_interval(placed.world, SlabRay(f.world_ray));
+        if (range.empty() || !placed.to_object(f.world_ray, object_ray)) return false;
         set_space(f, object_ray);
     }
+    f.world = range;
     f.instance = instance;
-    f.geometry = &world.geometries[placed.geometry];
-    f.nodes = f.geometry->nodes;
-    const bool triangles = f.geometry->kind == PrimitiveKind::triangles;
-    f.leaves = triangles ? reinterpret_cast<uintptr_t>(f.geometry->blocks)
-                         : reinterpret_cast<uintptr_t>(f.geometry->order);
-    f.leaf_stride = triangles ? sizeof(TriangleBlock) : sizeof(uint32_t);
+    f.level = world.levels[placed.geometry];
     set_range<kMode>(f);
     f.next = ChildRef::node(0);
     return true;
@@ -280,7 +272,6 @@ bool enter(Flight& f, const World& world, uint32_t instance) {
 template <Mode kMode>
 void leave(Flight& f, const World& world) {
     if (!world.instances[f.instance].identity) set_space(f, f.world_ray);
-    f.world = {};
     to_upper_level<kMode>(f, world);
     f.next = pop<kMode>(f);
 }
@@ -289,8 +280,8 @@ void leave(Flight& f, const World& world) {
 template <Mode kMode>
 void visit_instances(Flight& f, const World& world) {
     const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
-    if (count > 1) f.push(ChildRef::leaf(first + 1, count - 1));
-    if (enter<kMode>(f, world, world.order[first])) {
+    if (count > 1) f.push(ChildRef::leaf(ItemKind::instance, first + 1, count - 1));
+    if (enter<kMode>(f, world, world.upper.entries[first].instance)) {
         f.push(kLeaveInstance);
     } else {
         f.next = pop<kMode>(f);
@@ -300,19 +291,23 @@ void visit_instances(Flight& f, const World& world) {
 /// Whatever is not a node. Leaves f.next behind.
 template <Mode kMode>
 inline void visit_other(Flight& f, const World& world) {
-    if (f.next == kLeaveInstance) return leave<kMode>(f, world);
-    if (f.geometry == nullptr) return visit_instances<kMode>(f, world);
-    f.next = visit_primitives<kMode>(f) ? kFinished : pop<kMode>(f);
+    bool done = false;
+    if (ChildRef::kind(f.next) == ItemKind::block) [[likely]] {
+        done = visit_blocks<kMode>(f, world, f.next);
+    } else if (f.next == kLeaveInstance) {
+        return leave<kMode>(f, world);
+    } else if (ChildRef::kind(f.next) == ItemKind::instance) {
+        return visit_instances<kMode>(f, world);
+    } else {
+        done = visit_shapes<kMode>(f, world, f.next);
+    }
+    f.next = done ? kFinished : pop<kMode>(f);
 }
 
-/// False when the ray hits nothing by definition.
+/// `ray` must be canonical.
 template <Mode kMode>
-inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* after, uint32_t index) {
-    if (world.nodes == nullptr || !canonical(in, f.world_ray)) return false;
-    if (kMode == Mode::after) {
-        if (!after->found()) return false;
-        f.after = *after;
-    }
+inline void set_out(Flight& f, const World& world, const Ray& ray, uint32_t index) {
+    f.world_ray = ray;
     f.index = index;
     f.tmin = f.world_ray.tmin;
     // Ids that every candidate comes before: one at tmax itself is still a hit.
@@ -320,11 +315,21 @@ inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* afte
     f.best.t = f.world_ray.tmax;
     f.depth = 0;
     f.push(kFinished);
-    f.world = {};
     set_space(f, f.world_ray);
-    if (world.only != kNoHit) return enter<kMode>(f, world, world.only);
     to_upper_level<kMode>(f, world);
     f.next = ChildRef::node(0);
+}
+
+/// False when the ray hits nothing by definition.
+template <Mode kMode>
+inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* after, uint32_t index) {
+    Ray ray;
+    if (world.upper.nodes == nullptr || !canonical(in, ray)) return false;
+    if (kMode == Mode::after) {
+        if (!after->found()) return false;
+        f.after = *after;
+    }
+    set_out<kMode>(f, world, ray, index);
     return true;
 }
 
@@ -333,10 +338,11 @@ inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* afte
 /// prefetch, so this one must be inlined before it notices.)
 __attribute__((always_inline)) inline void prefetch(const Flight& f) {
     const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
-    const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), somewhere = all_if(f.next < kFinished);
-    const uintptr_t node = reinterpret_cast<uintptr_t>(f.nodes) + uintptr_t(f.next) * sizeof(WideNode);
-    const uintptr_t item = f.leaves + (ChildRef::first(f.next) & somewhere) * f.leaf_stride;
-    const char* place = reinterpret_cast<const char*>((item & leaf) | (node & ~leaf));
+    const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), blocks = all_if(f.next < ChildRef::kFirstOther);
+    const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(WideNode);
+    const uintptr_t block = reinterpret_cast<uintptr_t>(f.level.blocks) +
+                            (ChildRef::first(f.next) & blocks) * sizeof(TriangleBlock);
+    const char* place = reinterpret_cast<const char*>((block & leaf) | (node & ~leaf));
     __builtin_prefetch(place);
     __builtin_prefetch(place + 64);
     __builtin_prefetch(place + 128);

@@ -20,7 +20,7 @@ struct alignas(64) Packet {
     uint64_t near_plane[3], far_plane[3];
     const WideNode* nodes;
 
-    const Ray* rays;
+    Ray ray[kPacket];  ///< canonical
     uint32_t first;     ///< index of the first ray in its batch
     Flight* flights;    ///< one for each ray, launched when a ray needs it
     uint32_t launched;  ///< a bit for each
@@ -35,7 +35,7 @@ struct PacketEntry {
 inline bool gather(Packet& p, const World& world, const Ray* rays) {
     uint32_t signs[3] = {};
     for (uint32_t i = 0; i < kPacket; ++i) {
-        Ray ray;
+        Ray& ray = p.ray[i];
         if (!canonical(rays[i], ray)) return false;
         for (int axis = 0; axis < 3; ++axis) {
             p.o[axis][i] = ray.o[axis], p.inv_d[axis][i] = ray.d[axis];
@@ -57,8 +57,7 @@ inline bool gather(Packet& p, const World& world, const Ray* rays) {
         p.o_range[axis][0] = least(o), p.o_range[axis][1] = largest(o);
     }
     p.least_start = least(Float16::load(p.start));
-    p.nodes = world.only == kNoHit ? world.nodes : world.geometries[world.instances[world.only].geometry].nodes;
-    p.rays = rays;
+    p.nodes = world.upper.nodes;
     p.launched = 0;
     return true;
 }
@@ -101,19 +100,18 @@ inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
     Flight& f = p.flights[i];
     if (p.launched >> i & 1) return f;
     p.launched |= 1u << i;
-    launch<kMode>(f, world, p.rays[i], nullptr, p.first + i);
+    set_out<kMode>(f, world, p.ray[i], p.first + i);
     return f;
 }
 
-/// The primitives of a leaf against the given rays.
+/// The triangles of a leaf against the given rays.
 template <Mode kMode>
 inline void visit_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays) {
     for (; rays; rays &= rays - 1) {
         const auto i = static_cast<uint32_t>(__builtin_ctz(rays));
         Flight& f = flight_of<kMode>(p, world, i);
-        f.next = ref;
         // Nothing is left to do for a ray that is done: no box begins before -infinity.
-        p.limit[i] = visit_primitives<kMode>(f) ? -kInfinity : f.limit;
+        p.limit[i] = visit_blocks<kMode>(f, world, ref) ? -kInfinity : f.limit;
     }
 }
 
@@ -132,12 +130,11 @@ inline void part(Packet& p, const World& world, uint32_t ref, uint32_t rays, con
 template <Mode kMode>
 inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
     constexpr int kAlone = 2;
-    const bool upper_level = world.only == kNoHit;
     uint32_t depth = 0;
     uint32_t ref = ChildRef::node(0), rays = (1u << kPacket) - 1;
     const float* t_in = p.start;
     while (true) {
-        if (ChildRef::is_leaf(ref) && !upper_level) {
+        if (ChildRef::is_leaf(ref) && ChildRef::kind(ref) == ItemKind::block) {
             visit_leaf<kMode>(p, world, ref, rays);
         } else if (ChildRef::is_leaf(ref) || __builtin_popcount(rays) <= kAlone) {
             part<kMode>(p, world, ref, rays, t_in);
@@ -176,7 +173,7 @@ inline void go_on(Flight& f) {
 /// sink(index, hit) for every ray, in any order.
 template <Mode kMode, class Sink>
 inline void trace_coherent(const World& world, const Ray* rays, size_t count, Sink sink) {
-    if (world.nodes == nullptr) return trace<kMode>(world, rays, nullptr, count, sink);
+    if (world.upper.nodes == nullptr) return trace<kMode>(world, rays, nullptr, count, sink);
     Flight flights[kInFlight];
     // A node leaves at most seven siblings behind.
     PacketEntry stack[(kWidth - 1) * kMaxNodeLevels + kWidth];
