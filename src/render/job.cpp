@@ -16,6 +16,7 @@
 #include "render/film.h"
 #include "render/integrator.h"
 #include "render/metadata.h"
+#include "scene/validate.h"
 
 namespace steradian {
 namespace {
@@ -30,14 +31,6 @@ uint32_t largest_tile(const RenderSettings& s, const Execution& e) {
 }
 
 Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
-
-Status check_crop(const RenderSettings& s) {
-    if (!s.crop ||
-        (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height))
-        return Ok{};
-    return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels",
-                                      s.crop->x0, s.crop->y0, s.crop->x1, s.crop->y1, s.width, s.height));
-}
 
 /// The sums, and the picture made of them twice: as it is handed over, and as a file's encoder holds it.
 /// And what the workers hold.
@@ -57,20 +50,7 @@ Status check_memory(const RenderSettings& s, const Execution& e) {
 }
 
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
-    if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
-    if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
-        return make_error(ErrorCode::resources,
-                          fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width, s.height,
-                                      kMaxResolution, kMaxPixels));
-    if (auto status = check_crop(s); !status) return status;
-    if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
-        return settings_error(
-            fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
-    if (s.max_depth > kMaxDepth)
-        return settings_error(fmt::format("a depth of {}: expected at most {}", s.max_depth, kMaxDepth));
-    if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
-        return settings_error(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius,
-                                          kMinFilterRadius, kMaxFilterRadius));
+    if (auto status = validate(s); !status) return status;
     if (e.tile_size < 1 || e.tile_size > 256)
         return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
