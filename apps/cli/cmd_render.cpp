@@ -242,11 +242,11 @@ void print_summary(const RenderSettings& s, const RenderResult& r, const std::ve
     std::string outputs;
     for (const std::string& path : written) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
     std::cerr << fmt::format(
-        "{}x{}, {} samples per pixel in {} ({} rays/s, {} threads){}{}\n", r.image.width, r.image.height,
+        "{}x{}, {} samples per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
         r.complete ? fmt::format("{}", s.samples_per_pixel)
                    : fmt::format("{} to {} of {}", r.min_samples, r.max_samples, s.samples_per_pixel),
         format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
-        outputs.empty() ? "" : " -> ", outputs);
+        r.statistics.threads == 1 ? "" : "s", outputs.empty() ? "" : " -> ", outputs);
 }
 
 void warn_bad_samples(const RenderStatistics& s, Diagnostics& diagnostics) {
@@ -327,12 +327,6 @@ int run_render(const RenderOptions& given) {
     return finish(o, *settings, *result, std::move(diagnostics));
 }
 
-template <class Kind>
-CLI::IsMember one_of() {
-    const auto names = names_of<Kind>();
-    return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
-}
-
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
@@ -358,8 +352,7 @@ void add_render(CLI::App& app, Action& action) {
                   "whole\npicture; 'all' undoes the scene's crop")
         ->group("Picture");
     c->add_option("--camera", o->camera, "Name or number of the camera")->group("Picture");
-    c->add_option("--integrator", o->integrator, "How light is computed: direct")
-        ->check(one_of<IntegratorKind>())
+    add_choice(c, "--integrator", o->integrator, names_of<IntegratorKind>(), "How light is computed: direct")
         ->group("Picture");
     add_count<uint32_t>(c, "--max-depth", o->max_depth, 0, kMaxDepth,
                         "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")
@@ -367,8 +360,7 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("--filter", o->filter,
                   "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
         ->group("Picture");
-    c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")
-        ->check(one_of<SamplerKind>())
+    add_choice(c, "--sampler", o->sampler, names_of<SamplerKind>(), "sobol (less noise) or independent")
         ->group("Picture");
     add_count<uint64_t>(c, "--seed", o->seed, 0, std::numeric_limits<uint64_t>::max(),
                         "Another seed gives another, equally good noise pattern")
@@ -379,15 +371,14 @@ void add_render(CLI::App& app, Action& action) {
     add_count<uint32_t>(c, "--tile-size", o->execution.tile_size, 1, 256, "Pixels, 1 to 256; never changes the picture")
         ->default_str(std::to_string(o->execution.tile_size))
         ->group("Execution");
-    c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")
-        ->check(one_of<BvhBuilder>())
-        ->capture_default_str()
+    add_choice(c, "--bvh", o->bvh, names_of<BvhBuilder>(),
+               "Builder of the hierarchy, sah or median; never changes the picture")
+        ->default_str(o->bvh)
         ->group("Execution");
-    c->add_option("--isa", o->isa,
-                  "Instructions of the ray kernels: auto (the best that the machine has, or what the environment "
-                  "variable STERADIAN_ISA says), scalar, sse4, avx2, avx512 or neon; never changes the picture")
-        ->check(one_of<Isa>())
-        ->capture_default_str()
+    add_choice(c, "--isa", o->isa, names_of<Isa>(),
+               "Instructions of the ray kernels: auto (the best that the machine has, or what the environment "
+               "variable STERADIAN_ISA says), scalar, sse4, avx2, avx512 or neon; never changes the picture")
+        ->default_str(o->isa)
         ->group("Execution");
     add_count<uint32_t>(c, "--bvh-max-depth", o->execution.bvh_max_depth, 1, 64,
                         "Levels of the hierarchy; never changes the picture")

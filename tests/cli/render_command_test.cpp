@@ -90,6 +90,13 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
     expect({"render", "scene.json", "--spp", "9223372036854775808"}, "whole number from 1 to");
     expect({"render", "scene.json", "--size", "10"}, "WIDTHxHEIGHT");
     expect({"render", "scene.json", "--size", "0x5"}, "at least 1");
+    expect({"render", "scene.json", "--sampler", "sobl"}, "did you mean 'sobol'?");
+    expect({"render", "scene.json", "--integrator", "Direct"}, "did you mean 'direct'?");
+    expect({"render", "scene.json", "--bvh", "meidan"}, "did you mean 'median'?");
+    expect({"render", "scene.json", "--isa", "avx22"}, "did you mean 'avx2'?");
+    expect({"render", "scene.json", "--isa", "mmx"}, "expected one of auto, scalar, ");
+    expect({"render", "scene.json", "--view", "agxx"}, "did you mean 'agx'?");
+    expect({"help", "rendre"}, "did you mean 'render'?");
     expect({"render", "scene.json", "--filter", "gausian"}, "did you mean 'gaussian'?");
     expect({"render", "scene.json", "--camera", "frnt"}, "did you mean 'front'?");
     expect({"render", "scene.json", "--crop", "1,2,3"}, "X0,Y0,X1,Y1");
@@ -107,6 +114,9 @@ TEST_F(RenderCommand, HelpAndVersionExitWith0) {
         EXPECT_EQ(o.code, 0);
         EXPECT_FALSE(o.out.empty());
     }
+    EXPECT_EQ(steradian({"help"}).out, steradian({"--help"}).out);
+    EXPECT_EQ(steradian({"help", "render"}).out, steradian({"render", "--help"}).out);
+    EXPECT_EQ(steradian({"help", "--help"}).code, 0);
 }
 
 TEST_F(RenderCommand, BadScenesExitWith3AndLeaveTheOldPictureAlone) {
