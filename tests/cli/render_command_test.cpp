@@ -160,28 +160,6 @@ TEST_F(RenderCommand, TooLargePicturesAreRefused) {
     EXPECT_EQ(steradian({"render", "scene.json", "--size", "99999999999x1"}).code, 2);
 }
 
-class RenderSignal : public RenderCommand, public testing::WithParamInterface<std::pair<int, int>> {};
-
-TEST_P(RenderSignal, StopsWithWhatIsDone) {
-    Process process(folder_, {"render", "scene.json", "--spp", "1000000000", "-o", "a.exr", "--json"});
-    ASSERT_TRUE(process.shows_progress());
-    const auto begin = std::chrono::steady_clock::now();
-    process.send(GetParam().first);
-    const Outcome o = process.wait();
-    EXPECT_LT(std::chrono::steady_clock::now() - begin,
-              std::chrono::seconds(20));  // 2 s are promised, on a machine with nothing else to do
-    EXPECT_EQ(o.code, GetParam().second) << o.err;
-    EXPECT_EQ(field(o.out, "complete"), "false");
-    const auto image = read_image(folder_.file("a.exr"));
-    ASSERT_TRUE(image.ok()) << image.error().str();
-    EXPECT_EQ(image_hash(*image), field(o.out, "hash"));
-    EXPECT_TRUE(image->metadata.count("steradian:partial"));
-    expect_files({"a.exr"});
-}
-
-INSTANTIATE_TEST_SUITE_P(Each, RenderSignal,
-                         testing::Values(std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}, std::pair{SIGHUP, 129}));
-
 TEST_F(RenderCommand, StrangeNamesWork) {
     for (const char* name : {"with space.json", "d%20.json", "\xf0\x9f\x90\xb0.json", "\xff\xfe.json", "-dash.json"}) {
         spit(folder_.file(name), kScene);
