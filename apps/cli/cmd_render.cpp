@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "command.h"
 #include "progress.h"
+#include "render/memory_estimate.h"
 #include "scene/validate.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
@@ -160,6 +161,8 @@ Result<Overrides> parse_overrides(const RenderOptions& o) {
     if (said.crop) alone.width = said.crop->x1, alone.height = said.crop->y1;  // at least, if the scene says the size
     override(o, said, alone);
     if (auto status = validate(alone); !status) return std::move(status).error();
+    if (said.size || said.crop)
+        if (auto status = check_picture_memory(alone, o.execution); !status) return std::move(status).error();
     return said;
 }
 
@@ -314,6 +317,8 @@ int run_render(const RenderOptions& given) {
     const auto settings = settings_for(o, *said, *loaded);
     if (!settings) return report(settings.error());
     Diagnostics diagnostics = std::move(loaded->diagnostics);
+    if (auto status = check_scene_memory(estimate_memory(loaded->scene, *settings, o.execution)); !status)
+        return report(status.error());
     auto scene = prepare(std::move(loaded->scene), o.execution, diagnostics);
     if (!scene) return report(scene.error());
     if (!o.quiet) report(diagnostics);
