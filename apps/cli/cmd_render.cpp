@@ -338,25 +338,28 @@ void add_render(CLI::App& app, Action& action) {
     auto o = std::make_shared<RenderOptions>();
     CLI::App* c = add_command(app, action, "render", "Render a scene (.json) or a model (.obj, .ply)", o, run_render);
     c->footer(
-        "What is not given comes from the scene file. A model without a scene gets a camera that frames it and a "
-        "neutral\n"
-        "studio light. Ctrl-C stops and writes what is done; the file's metadata then says that it is partial.");
-    c->add_option("SCENE", o->scene, "The scene or model to render")->required();
+        "What is not given comes from the scene file, and what that does not say is 512x512 pixels with 64 samples.\n"
+        "A model without a scene gets a camera that frames it and a neutral studio light. Ctrl-C stops and writes "
+        "what\n"
+        "is done; the file's metadata then says that it is partial.");
+    c->add_option("SCENE", o->scene, "The scene or model to render")->required()->type_name("FILE");
     c->add_option("-o,--output", o->outputs,
                   "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
                   ".png in the current folder (with --json: no file)")
         ->allow_extra_args(false)
+        ->type_name("FILE")
         ->group("Output");
     add_picture_options(c, o->picture, "Output");
     add_count<uint64_t>(c, "--spp", o->spp, 1, kMaxSamplesPerPixel,
                         "Samples per pixel; the noise falls with their square root")
         ->group("Picture");
-    c->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->group("Picture");
+    c->add_option("--size", o->size, "Pixels, for example 1920x1080")->type_name("WIDTHxHEIGHT")->group("Picture");
     c->add_option("--crop", o->crop,
-                  "X0,Y0,X1,Y1: render only these pixels (X1, Y1 not included), with the same bits as in the "
-                  "whole\npicture; 'all' undoes the scene's crop")
+                  "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
+                  "bits as in the whole picture; 'all' undoes the scene's crop")
+        ->type_name("X0,Y0,X1,Y1")
         ->group("Picture");
-    c->add_option("--camera", o->camera, "Name or number of the camera")->group("Picture");
+    c->add_option("--camera", o->camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
     add_choice(c, "--integrator", o->integrator, names_of<IntegratorKind>(), "How light is computed: direct")
         ->group("Picture");
     add_count<uint32_t>(c, "--max-depth", o->max_depth, 0, kMaxDepth,
@@ -364,6 +367,7 @@ void add_render(CLI::App& app, Action& action) {
         ->group("Picture");
     c->add_option("--filter", o->filter,
                   "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
+        ->type_name("NAME[:RADIUS]")
         ->group("Picture");
     add_choice(c, "--sampler", o->sampler, names_of<SamplerKind>(), "sobol (less noise) or independent")
         ->group("Picture");
@@ -381,8 +385,8 @@ void add_render(CLI::App& app, Action& action) {
         ->default_str(o->bvh)
         ->group("Execution");
     add_choice(c, "--isa", o->isa, names_of<Isa>(),
-               "Instructions of the ray kernels: auto (the best that the machine has, or what the environment "
-               "variable STERADIAN_ISA says), scalar, sse4, avx2, avx512 or neon; never changes the picture")
+               "Instructions of the ray kernels: scalar, sse4, avx2, avx512, neon or auto (the best that\n"
+               "the machine has, or what the environment variable STERADIAN_ISA says); never changes the\npicture")
         ->default_str(o->isa)
         ->group("Execution");
     add_count<uint32_t>(c, "--bvh-max-depth", o->execution.bvh_max_depth, 1, 64,

@@ -96,6 +96,9 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
     expect({"render", "scene.json", "--isa", "avx22"}, "did you mean 'avx2'?");
     expect({"render", "scene.json", "--isa", "mmx"}, "expected one of auto, scalar, ");
     expect({"render", "scene.json", "--view", "agxx"}, "did you mean 'agx'?");
+    expect({"render", "scene.json", "--spps", "4"}, "did you mean '--spp'?");
+    expect({"render", "scene.json", "--max-dept=4"}, "did you mean '--max-depth'?");
+    expect({"render", "scene.json", "--xylophone"}, "steradian render --help shows what there is");
     expect({"help", "rendre"}, "did you mean 'render'?");
     expect({"render", "scene.json", "--filter", "gausian"}, "did you mean 'gaussian'?");
     expect({"render", "scene.json", "--camera", "frnt"}, "did you mean 'front'?");
