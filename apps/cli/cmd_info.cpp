@@ -11,6 +11,7 @@
 #include "picture_info.h"
 #include "progress.h"
 #include "steradian/load.h"
+#include "steradian/render.h"
 
 namespace steradian::cli {
 namespace {
@@ -107,8 +108,15 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
     std::cout << "\n  cameras    " << scene.cameras.size();
     for (size_t i = 0; i < scene.cameras.size(); ++i)
         std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
-    std::cout << fmt::format("\n  memory     {}B of geometry, {}B of texels, before the hierarchy\n",
-                             format_quantity(double(s.geometry_bytes)), format_quantity(double(s.texel_bytes)));
+    const auto bytes = [](uint64_t n) { return format_quantity(double(n)) + "B"; };
+    const MemoryEstimate m = estimate_memory(scene, r);
+    std::cout << fmt::format("\n  memory     {} of geometry, {} of texels\n", bytes(s.geometry_bytes),
+                             bytes(s.texel_bytes));
+    std::cout << fmt::format(
+        "  to render  about {}: {} for the scene, {} for its hierarchy and tables (for a while {} more, to build "
+        "them), "
+        "{} for the picture\n",
+        bytes(m.peak()), bytes(m.scene), bytes(m.hierarchy), bytes(m.build), bytes(m.picture));
     std::cout << fmt::format(
         "  settings   {}x{}, {} samples per pixel, {} integrator, depth {}, {} filter of radius {:.3g}, {} sampler, "
         "seed {}\n",
@@ -130,6 +138,11 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     number("materials", scene.materials.size()), number("textures", scene.textures.size()),
         number("images", scene.images.size());
     number("geometry_bytes", s.geometry_bytes), number("texel_bytes", s.texel_bytes);
+    const MemoryEstimate m = estimate_memory(scene, loaded.settings);
+    w.Key("memory"), w.StartObject();
+    number("scene_bytes", m.scene), number("hierarchy_bytes", m.hierarchy), number("build_bytes", m.build);
+    number("picture_bytes", m.picture), number("peak_bytes", m.peak());
+    w.EndObject();
     w.Key("lights"), w.StartArray();
     for (const Light& light : scene.lights) w.String(kind_of(light));
     w.EndArray();

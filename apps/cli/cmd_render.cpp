@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "command.h"
 #include "progress.h"
+#include "render/memory_estimate.h"
 #include "scene/validate.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
@@ -160,6 +161,8 @@ Result<Overrides> parse_overrides(const RenderOptions& o) {
     if (said.crop) alone.width = said.crop->x1, alone.height = said.crop->y1;  // at least, if the scene says the size
     override(o, said, alone);
     if (auto status = validate(alone); !status) return std::move(status).error();
+    if (said.size || said.crop)
+        if (auto status = check_picture_memory(alone, o.execution); !status) return std::move(status).error();
     return said;
 }
 
@@ -242,11 +245,11 @@ void print_summary(const RenderSettings& s, const RenderResult& r, const std::ve
     std::string outputs;
     for (const std::string& path : written) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
     std::cerr << fmt::format(
-        "{}x{}, {} samples per pixel in {} ({} rays/s, {} threads){}{}\n", r.image.width, r.image.height,
+        "{}x{}, {} samples per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
         r.complete ? fmt::format("{}", s.samples_per_pixel)
                    : fmt::format("{} to {} of {}", r.min_samples, r.max_samples, s.samples_per_pixel),
         format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
-        outputs.empty() ? "" : " -> ", outputs);
+        r.statistics.threads == 1 ? "" : "s", outputs.empty() ? "" : " -> ", outputs);
 }
 
 void warn_bad_samples(const RenderStatistics& s, Diagnostics& diagnostics) {
@@ -314,6 +317,8 @@ int run_render(const RenderOptions& given) {
     const auto settings = settings_for(o, *said, *loaded);
     if (!settings) return report(settings.error());
     Diagnostics diagnostics = std::move(loaded->diagnostics);
+    if (auto status = check_scene_memory(estimate_memory(loaded->scene, *settings, o.execution)); !status)
+        return report(status.error());
     auto scene = prepare(std::move(loaded->scene), o.execution, diagnostics);
     if (!scene) return report(scene.error());
     if (!o.quiet) report(diagnostics);
@@ -327,48 +332,44 @@ int run_render(const RenderOptions& given) {
     return finish(o, *settings, *result, std::move(diagnostics));
 }
 
-template <class Kind>
-CLI::IsMember one_of() {
-    const auto names = names_of<Kind>();
-    return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
-}
-
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
     auto o = std::make_shared<RenderOptions>();
     CLI::App* c = add_command(app, action, "render", "Render a scene (.json) or a model (.obj, .ply)", o, run_render);
     c->footer(
-        "What is not given comes from the scene file. A model without a scene gets a camera that frames it and a "
-        "neutral\n"
-        "studio light. Ctrl-C stops and writes what is done; the file's metadata then says that it is partial.");
-    c->add_option("SCENE", o->scene, "The scene or model to render")->required();
+        "What is not given comes from the scene file, and what that does not say is 512x512 pixels with 64 samples.\n"
+        "A model without a scene gets a camera that frames it and a neutral studio light. Ctrl-C stops and writes "
+        "what\n"
+        "is done; the file's metadata then says that it is partial.");
+    c->add_option("SCENE", o->scene, "The scene or model to render")->required()->type_name("FILE");
     c->add_option("-o,--output", o->outputs,
                   "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
                   ".png in the current folder (with --json: no file)")
         ->allow_extra_args(false)
+        ->type_name("FILE")
         ->group("Output");
     add_picture_options(c, o->picture, "Output");
     add_count<uint64_t>(c, "--spp", o->spp, 1, kMaxSamplesPerPixel,
                         "Samples per pixel; the noise falls with their square root")
         ->group("Picture");
-    c->add_option("--size", o->size, "WIDTHxHEIGHT in pixels")->group("Picture");
+    c->add_option("--size", o->size, "Pixels, for example 1920x1080")->type_name("WIDTHxHEIGHT")->group("Picture");
     c->add_option("--crop", o->crop,
-                  "X0,Y0,X1,Y1: render only these pixels (X1, Y1 not included), with the same bits as in the "
-                  "whole\npicture; 'all' undoes the scene's crop")
+                  "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
+                  "bits as in the whole picture; 'all' undoes the scene's crop")
+        ->type_name("X0,Y0,X1,Y1")
         ->group("Picture");
-    c->add_option("--camera", o->camera, "Name or number of the camera")->group("Picture");
-    c->add_option("--integrator", o->integrator, "How light is computed: direct")
-        ->check(one_of<IntegratorKind>())
+    c->add_option("--camera", o->camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
+    add_choice(c, "--integrator", o->integrator, names_of<IntegratorKind>(), "How light is computed: direct")
         ->group("Picture");
     add_count<uint32_t>(c, "--max-depth", o->max_depth, 0, kMaxDepth,
                         "Bounces: 0 only what glows, 1 direct light, more for mirrors and glass")
         ->group("Picture");
     c->add_option("--filter", o->filter,
                   "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
+        ->type_name("NAME[:RADIUS]")
         ->group("Picture");
-    c->add_option("--sampler", o->sampler, "sobol (less noise) or independent")
-        ->check(one_of<SamplerKind>())
+    add_choice(c, "--sampler", o->sampler, names_of<SamplerKind>(), "sobol (less noise) or independent")
         ->group("Picture");
     add_count<uint64_t>(c, "--seed", o->seed, 0, std::numeric_limits<uint64_t>::max(),
                         "Another seed gives another, equally good noise pattern")
@@ -379,15 +380,14 @@ void add_render(CLI::App& app, Action& action) {
     add_count<uint32_t>(c, "--tile-size", o->execution.tile_size, 1, 256, "Pixels, 1 to 256; never changes the picture")
         ->default_str(std::to_string(o->execution.tile_size))
         ->group("Execution");
-    c->add_option("--bvh", o->bvh, "Builder of the hierarchy, sah or median; never changes the picture")
-        ->check(one_of<BvhBuilder>())
-        ->capture_default_str()
+    add_choice(c, "--bvh", o->bvh, names_of<BvhBuilder>(),
+               "Builder of the hierarchy, sah or median; never changes the picture")
+        ->default_str(o->bvh)
         ->group("Execution");
-    c->add_option("--isa", o->isa,
-                  "Instructions of the ray kernels: auto (the best that the machine has, or what the environment "
-                  "variable STERADIAN_ISA says), scalar, sse4, avx2, avx512 or neon; never changes the picture")
-        ->check(one_of<Isa>())
-        ->capture_default_str()
+    add_choice(c, "--isa", o->isa, names_of<Isa>(),
+               "Instructions of the ray kernels: scalar, sse4, avx2, avx512, neon or auto (the best that\n"
+               "the machine has, or what the environment variable STERADIAN_ISA says); never changes the\npicture")
+        ->default_str(o->isa)
         ->group("Execution");
     add_count<uint32_t>(c, "--bvh-max-depth", o->execution.bvh_max_depth, 1, 64,
                         "Levels of the hierarchy; never changes the picture")

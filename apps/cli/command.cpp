@@ -67,6 +67,10 @@ double parse_real(const std::string& option, const std::string& text, double low
     throw CLI::ValidationError(option, fmt::format("expected a number from {} to {}, not '{}'", lowest, highest, text));
 }
 
+UnknownChoice::UnknownChoice(const std::string& option, const std::string& word,
+                             std::span<const std::string_view> choices)
+    : CLI::ValidationError(option, "unknown value '" + word + "'"), hint(suggestion(word, choices)) {}
+
 ImageWriteOptions PictureOptions::write() const {
     ImageWriteOptions out;
     if (half) out.exr = ExrPrecision::half;
@@ -79,8 +83,8 @@ void add_picture_options(CLI::App* c, PictureOptions& options, const std::string
     c->add_flag("--half", options.half, "EXR with 16-bit instead of 32-bit floats; beyond 65504 they are clamped")
         ->group(group);
     add_real(c, "--exposure", options.exposure, -100, 100, "Stops, for PNG (+1: twice as bright)")->group(group);
-    c->add_option("--view", options.view, "View transform for PNG")
-        ->check(CLI::IsMember(std::vector<std::string>(view_names().begin(), view_names().end())))
+    add_choice(c, "--view", options.view, view_names(),
+               fmt::format("View transform for PNG: {}", fmt::join(view_names(), ", ")))
         ->default_str(ImageWriteOptions{}.view)
         ->group(group);
 }

@@ -4,6 +4,7 @@
 #include <rapidjson/prettywriter.h>
 #include <rapidjson/stringbuffer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -65,6 +66,23 @@ CLI::Option* add_real(CLI::App* c, const std::string& names, Value& value, doubl
         value = parse_real(name, text, lowest, highest);
     };
     return c->add_option_function<std::string>(names, set, help)->type_name("FLOAT");
+}
+
+/// A word that is none of those an option knows; `hint` says which one may have been meant.
+struct UnknownChoice : CLI::ValidationError {
+    UnknownChoice(const std::string& option, const std::string& word, std::span<const std::string_view> choices);
+    std::string hint;
+};
+
+/// An option with one of `choices`; the chosen one goes to `value`, a std::string or an optional one.
+template <class Value>
+CLI::Option* add_choice(CLI::App* c, const std::string& name, Value& value, std::span<const std::string_view> choices,
+                        const std::string& help) {
+    const auto set = [&value, name, choices](const std::string& word) {
+        if (std::find(choices.begin(), choices.end(), word) == choices.end()) throw UnknownChoice(name, word, choices);
+        value = word;
+    };
+    return c->add_option_function<std::string>(name, set, help)->type_name("NAME");
 }
 
 /// How pictures are to be written; one set of options for all commands that choose it.

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,9 +42,28 @@ std::optional<Error> unknown_command(const CLI::App& app, std::string_view word)
     return make_error(ErrorCode::usage, "unknown command '" + escape_for_display(word) + "'", suggestion(word, names));
 }
 
+/// "did you mean '--spp'?" for the first option that a command does not have; empty when none is close.
+std::string option_hint(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    for (const std::string& word : command.remaining()) {
+        if (!word.starts_with("--")) continue;
+        const auto match = closest_match(word.substr(0, word.find('=')), known);
+        return match ? "did you mean '" + *match + "'?" : std::string();
+    }
+    return {};
+}
+
 /// The arguments may hold foreign bytes, and CLI11 repeats them as they are.
 Error wrong_arguments(const CLI::App& app, const CLI::ParseError& e) {
+    if (const auto* choice = dynamic_cast<const UnknownChoice*>(&e))
+        return usage_error(escape_for_display(e.what(), 4096), choice->hint);
     const auto chosen = app.get_subcommands();
+    if (!chosen.empty())
+        if (std::string hint = option_hint(*chosen.front()); !hint.empty())
+            return usage_error(escape_for_display(e.what(), 4096), std::move(hint));
     const std::string name = chosen.empty() ? "" : chosen.front()->get_name() + " ";
     return usage_error(escape_for_display(e.what(), 4096), "steradian " + name + "--help shows what there is");
 }
@@ -62,9 +82,13 @@ int run(int argc, char** argv) {
         std::cout << app.help();
         return kUsage;
     }
-    if (const auto wrong = unknown_command(app, argv[1])) return report(*wrong);
+    // `steradian help` and `steradian help render` are what many type first.
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (arguments[0] == "help") arguments.erase(arguments.begin()), arguments.emplace_back("--help");
+    if (const auto wrong = unknown_command(app, arguments[0])) return report(*wrong);
     try {
-        app.parse(argc, argv);
+        std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes a vector
+        app.parse(std::move(arguments));
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() != 0) return report(wrong_arguments(app, e));
         app.exit(e);  // help or version

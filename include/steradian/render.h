@@ -23,6 +23,18 @@ class RenderScene;
 /// that are not finite or beyond 1e15) is dropped with one counted warning in `diagnostics`.
 Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics);
 
+/// What rendering a scene takes, in bytes and within about a fifth, before any of it is taken.
+struct MemoryEstimate {
+    uint64_t scene = 0;      ///< what the Scene holds: geometry, texels, objects
+    uint64_t hierarchy = 0;  ///< the hierarchy and the tables of lights and objects, as long as the scene is rendered
+    uint64_t build = 0;      ///< on top of that while they are built
+    uint64_t picture = 0;    ///< while a picture is rendered
+    uint64_t peak() const noexcept { return scene + hierarchy + (build > picture ? build : picture); }
+};
+/// Of a scene that need not have been checked, and of settings and an execution in their documented ranges. prepare and
+/// RenderJob::start refuse what does not fit into memory by these numbers.
+MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& settings, const Execution& execution = {});
+
 struct RenderProgress {
     uint64_t samples_done = 0;  ///< camera samples finished, over all pixels
     uint64_t samples_total = 0;

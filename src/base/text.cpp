@@ -149,6 +149,21 @@ std::optional<double> parse_double(std::string_view text) {
     return value;
 }
 
+const char* foreign_encoding(std::string_view text) noexcept {
+    const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 1; };
+    const auto is = [&](int a, int b, int c, int d) {
+        const auto matches = [&](size_t i, int wanted) { return wanted < 0 ? byte(i) != 0 : byte(i) == wanted; };
+        return matches(0, a) && matches(1, b) && matches(2, c) && matches(3, d);
+    };
+    // UTF-32 first: its little-endian mark begins with that of UTF-16. No text begins with a NUL.
+    if (is(0xff, 0xfe, 0, 0) || is(-1, 0, 0, 0)) return "UTF-32 (little-endian)";
+    if (is(0, 0, 0xfe, 0xff) || is(0, 0, 0, -1)) return "UTF-32 (big-endian)";
+    if (text.size() < 2) return nullptr;
+    if ((byte(0) == 0xff && byte(1) == 0xfe) || (byte(0) != 0 && byte(1) == 0)) return "UTF-16 (little-endian)";
+    if ((byte(0) == 0xfe && byte(1) == 0xff) || (byte(0) == 0 && byte(1) != 0)) return "UTF-16 (big-endian)";
+    return nullptr;
+}
+
 bool iequals(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }

@@ -34,6 +34,10 @@ TextPosition locate(std::string_view text, size_t offset);
 /// nan. Out-of-range values give infinity or zero with the right sign, as strtod would.
 std::optional<double> parse_double(std::string_view text);
 
+/// The name of the encoding when a text is plainly UTF-16 or UTF-32, told by its byte order mark or by the zeros that
+/// ASCII has in them; nothing for what may be UTF-8.
+const char* foreign_encoding(std::string_view text) noexcept;
+
 bool iequals(std::string_view a, std::string_view b);
 /// Lower-case extension with its dot, of the last path component: ".exr"; empty when there is none.
 std::string extension_of(std::string_view path);

@@ -41,6 +41,18 @@ std::string identity(const std::string& path) {
     return error ? path : canonical.string();
 }
 
+/// Appends an element with its name and returns its index. The list of names begins with the first one that says
+/// anything: a million objects without names do without.
+template <class T>
+uint32_t add_named(std::vector<T>& pool, std::vector<std::string>& names, T element, std::string& name) {
+    if (!name.empty() || !names.empty()) {
+        names.resize(pool.size());
+        names.push_back(std::move(name));
+    }
+    pool.push_back(std::move(element));
+    return static_cast<uint32_t>(pool.size() - 1);
+}
+
 }  // namespace
 
 void warn_about_reflectance(Diagnostics& diagnostics, Rgb reflectance, SourceLocation where) {
@@ -87,8 +99,8 @@ Result<ImageId> Assets::open_image(const std::string& path) {
     auto texels = read_texels(path, options_.images);
     if (!texels) return std::move(texels).error();
     loaded_.files.push_back(path);
-    const ImageId id = add<ImageId>(loaded_.scene.images, std::move(*texels));
-    loaded_.scene.names.images.push_back(path);
+    std::string name = path;
+    const auto id = ImageId(add_named(loaded_.scene.images, loaded_.scene.names.images, std::move(*texels), name));
     images_.emplace(key, id);
     return id;
 }
@@ -197,37 +209,31 @@ MaterialId Assets::add_diffuse(Rgb reflectance, bool two_sided, std::string name
 }
 
 TextureId Assets::add_texture(Texture texture, std::string name) {
-    loaded_.scene.names.textures.push_back(std::move(name));
-    return add<TextureId>(loaded_.scene.textures, std::move(texture));
+    return TextureId(add_named(loaded_.scene.textures, loaded_.scene.names.textures, std::move(texture), name));
 }
 
 MaterialId Assets::add_material(Material material, std::string name) {
-    loaded_.scene.names.materials.push_back(std::move(name));
-    return add<MaterialId>(loaded_.scene.materials, std::move(material));
+    return MaterialId(add_named(loaded_.scene.materials, loaded_.scene.names.materials, std::move(material), name));
 }
 
 ShapeId Assets::add_shape(Shape shape, std::string name) {
-    loaded_.scene.names.shapes.push_back(std::move(name));
-    return add<ShapeId>(loaded_.scene.shapes, std::move(shape));
+    return ShapeId(add_named(loaded_.scene.shapes, loaded_.scene.names.shapes, std::move(shape), name));
 }
 
 MeshId Assets::add_mesh(Mesh mesh, std::string name) {
-    loaded_.scene.names.meshes.push_back(std::move(name));
-    return add<MeshId>(loaded_.scene.meshes, std::move(mesh));
+    return MeshId(add_named(loaded_.scene.meshes, loaded_.scene.names.meshes, std::move(mesh), name));
 }
 
 InstanceId Assets::add_instance(Instance instance, std::string name) {
-    loaded_.scene.names.instances.push_back(std::move(name));
-    return add<InstanceId>(loaded_.scene.instances, std::move(instance));
+    return InstanceId(add_named(loaded_.scene.instances, loaded_.scene.names.instances, std::move(instance), name));
 }
 
 void Assets::add_light(Light light, std::string name) {
-    loaded_.scene.names.lights.push_back(std::move(name));
-    loaded_.scene.lights.push_back(std::move(light));
+    add_named(loaded_.scene.lights, loaded_.scene.names.lights, std::move(light), name);
 }
 
 void Assets::add_camera(Camera camera, std::string name) {
-    loaded_.scene.names.cameras.push_back(std::move(name));
+    loaded_.scene.names.cameras.push_back(std::move(name));  // always: they are chosen by it, even by an empty one
     loaded_.scene.cameras.push_back(std::move(camera));
 }
 

@@ -84,6 +84,18 @@ std::optional<Affine> inverse(const Affine& a) {
     return out;
 }
 
+std::optional<Affine> usable_inverse(const Affine& a) {
+    const auto bounded = [](const Affine& matrix) {
+        for (const auto& row : matrix.m)
+            for (const double x : row)
+                if (!(std::fabs(x) <= kMaxTransform)) return false;
+        return true;
+    };
+    std::optional<Affine> inverted = inverse(a);
+    if (inverted && !(bounded(a) && bounded(*inverted))) inverted.reset();
+    return inverted;
+}
+
 bool is_identity(const Affine& a) { return a == Affine{}; }
 
 bool is_finite(const Affine& a) {

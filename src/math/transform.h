@@ -14,6 +14,10 @@ Vec3d transform_normal_by_inverse(const Affine& inverse, Vec3d n);
 
 /// Nothing when the matrix is singular or not finite.
 std::optional<Affine> inverse(const Affine& a);
+/// The inverse, when it exists and no element of either matrix is beyond kMaxTransform: the numbers of rays in the
+/// object's space then stay within the range of float.
+inline constexpr double kMaxTransform = 1e30;
+std::optional<Affine> usable_inverse(const Affine& a);
 double determinant(const Affine& a);
 bool is_identity(const Affine& a);
 bool is_finite(const Affine& a);

@@ -11,70 +11,26 @@
 #include <thread>
 #include <vector>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "render/film.h"
 #include "render/integrator.h"
+#include "render/memory_estimate.h"
 #include "render/metadata.h"
+#include "scene/validate.h"
 
 namespace steradian {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.width, s.height}); }
-
-uint32_t largest_tile(const RenderSettings& s, const Execution& e) {
-    const Crop window = window_of(s);
-    return std::min(e.tile_size, window.x1 - window.x0) * std::min(e.tile_size, window.y1 - window.y0);
-}
-
 Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
 
-Status check_crop(const RenderSettings& s) {
-    if (!s.crop ||
-        (s.crop->x0 < s.crop->x1 && s.crop->y0 < s.crop->y1 && s.crop->x1 <= s.width && s.crop->y1 <= s.height))
-        return Ok{};
-    return settings_error(fmt::format("the crop {},{},{},{} is empty or leaves the picture of {} × {} pixels",
-                                      s.crop->x0, s.crop->y0, s.crop->x1, s.crop->y1, s.width, s.height));
-}
-
-/// The sums, and the picture made of them twice: as it is handed over, and as a file's encoder holds it.
-/// And what the workers hold.
-Status check_memory(const RenderSettings& s, const Execution& e) {
-    const Crop window = window_of(s);
-    const uint64_t width = window.x1 - window.x0, height = window.y1 - window.y0, pixels = width * height;
-    const uint64_t workers = e.threads ? e.threads : hardware_threads();
-    const uint64_t needed = pixels * (sizeof(RgbSum) + 2 * 3 * sizeof(float)) +
-                            Film::tile_bytes() * (width / e.tile_size + 2) * (height / e.tile_size + 2) +
-                            workers * direct_integrator_bytes(largest_tile(s, e));
-    const uint64_t available = available_memory();
-    if (needed <= available) return Ok{};
-    return make_error(ErrorCode::resources,
-                      fmt::format("{} pixels on {} threads need about {} MB of memory, {} MB are available", pixels,
-                                  workers, needed >> 20, available >> 20),
-                      "render it in parts with --crop, or with fewer threads or smaller tiles");
-}
-
 Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
-    if (s.width < 1 || s.height < 1) return settings_error("the picture must be at least 1 × 1 pixels");
-    if (s.width > kMaxResolution || s.height > kMaxResolution || uint64_t(s.width) * s.height > kMaxPixels)
-        return make_error(ErrorCode::resources,
-                          fmt::format("{} × {} pixels are too many: at most {} a side and {} in all", s.width, s.height,
-                                      kMaxResolution, kMaxPixels));
-    if (auto status = check_crop(s); !status) return status;
-    if (s.samples_per_pixel < 1 || s.samples_per_pixel > kMaxSamplesPerPixel)
-        return settings_error(
-            fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
-    if (s.max_depth > kMaxDepth)
-        return settings_error(fmt::format("a depth of {}: expected at most {}", s.max_depth, kMaxDepth));
-    if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
-        return settings_error(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius,
-                                          kMinFilterRadius, kMaxFilterRadius));
+    if (auto status = validate(s); !status) return status;
     if (e.tile_size < 1 || e.tile_size > 256)
         return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
-    if (auto status = check_memory(s, e); !status) return status;
+    if (auto status = check_picture_memory(s, e); !status) return status;
     if (s.camera >= cameras)
         return settings_error(cameras == 0 ? "the scene has no camera"
                                            : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
@@ -102,7 +58,7 @@ public:
 
     /// Own threads and not TBB's: the number of workers is then exactly what was asked for, in any host program.
     void launch() {
-        const uint32_t wanted = execution_.threads ? execution_.threads : hardware_threads();
+        const uint32_t wanted = workers_of(execution_);
         const uint64_t units = units_total();
         const auto count = static_cast<uint32_t>(std::min<uint64_t>(wanted, std::max<uint64_t>(units, 1)));
         // Integrators take their memory here, where running out of it can still be reported by start().

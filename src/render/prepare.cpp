@@ -5,9 +5,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "base/memory.h"
 #include "base/parallel.h"
 #include "math/transform.h"
+#include "render/memory_estimate.h"
 #include "render/render_scene.h"
 #include "scene/validate.h"
 #include "shading/surface.h"
@@ -50,16 +50,11 @@ std::vector<Geometry> geometries_of(const Scene& scene, const AnalyticShapes& an
     return out;
 }
 
-/// The hierarchy takes about 60 bytes a primitive and, while it is built, as much again.
-Status check_memory(const Scene& scene) {
-    constexpr uint64_t kBytes = 120;
-    uint64_t primitives = scene.shapes.size() + scene.instances.size();
-    for (const Mesh& mesh : scene.meshes) primitives += mesh.indices.size() / 3;
-    const uint64_t needed = primitives * kBytes, available = available_memory();
-    if (needed <= available) return Ok{};
-    return make_error(ErrorCode::resources,
-                      fmt::format("the hierarchy over {} primitives needs about {} MB of memory, {} MB are available",
-                                  primitives, needed >> 20, available >> 20));
+/// A scene can be prepared before anybody knows for which pictures.
+RenderSettings smallest_picture() {
+    RenderSettings settings;
+    settings.width = settings.height = 1;
+    return settings;
 }
 
 Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution,
@@ -68,7 +63,8 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     sanitize(scene, diagnostics);
     if (auto status = validate(scene); !status) return std::move(status).error();
     if (scene.lights.empty()) diagnostics.warn("the scene has no lights: the picture will be black");
-    if (auto status = check_memory(scene); !status) return std::move(status).error();
+    if (auto status = check_scene_memory(estimate_memory(scene, smallest_picture(), execution)); !status)
+        return std::move(status).error();
     bake_transforms(scene);
     sanitize(scene, diagnostics);  // a transform may have moved vertices out of bounds
 

@@ -124,7 +124,8 @@ private:
     void check(const Instance& i) const {
         refers(i.shape, s_.shapes, "shape");
         refers(i.material, s_.materials, "material");
-        require(inverse(i.world_from_object).has_value(), "the transform is singular or not finite");
+        require(usable_inverse(i.world_from_object).has_value(),
+                "the transform is singular or not finite, or it scales beyond 1e30 or 1e-30");
     }
 
     void check(const PointLight& l) const {

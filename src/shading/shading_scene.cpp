@@ -13,11 +13,10 @@
 namespace steradian {
 namespace {
 
-ShadingScene::InstanceData instance_data(const Instance& instance) {
-    ShadingScene::InstanceData out;
-    const Affine& m = instance.world_from_object;
-    out.identity = is_identity(m);
-    if (out.identity) return out;
+/// Of a transform that is not the identity.
+ShadingScene::TransformData transform_data(const Affine& m) {
+    ShadingScene::TransformData out;
+    out.identity = false;
     out.object_from_world = inverse(m).value_or(Affine{});  // validate() has refused singular transforms
     out.flips = determinant(m) < 0;
     double product[3][3] = {};
@@ -39,22 +38,23 @@ public:
         : scene_(scene),
           id_(id),
           instance_(scene.scene.instances[index(id)]),
-          data_(scene.instances[index(id)]),
+          data_(scene.transform_of(index(id))),
           transform_(instance_.world_from_object),
           out_(out) {}
 
     void operator()(MeshId id) {
         const Mesh& mesh = scene_.scene.meshes[index(id)];
         const auto triangles = static_cast<uint32_t>(mesh.indices.size() / 3);
-        out_.cumulative_area.reserve(triangles);
+        MeshEmitter emitter{id_, id, {}};
+        emitter.cumulative_area.reserve(triangles);
         double total = 0;
         for (uint32_t i = 0; i < triangles; ++i) {
             const EmitterTriangle object = object_triangle(mesh, i);
             const EmitterTriangle world = data_.identity ? object : world_triangle(transform_, object);
             total += length(world.scaled_normal()) / 2;
-            out_.cumulative_area.push_back(total);
+            emitter.cumulative_area.push_back(total);
         }
-        finish(MeshEmitter{id_, id}, total);
+        finish(std::move(emitter), total);
     }
 
     void operator()(const Sphere& sphere) {
@@ -67,9 +67,8 @@ public:
             finish(SphereEmitter{to_world(center), radius, p_error}, 4 * std::numbers::pi * radius * radius);
             return;
         }
-        const EllipsoidEmitter e{transform_, data_.object_from_world, center, r, std::fabs(determinant(transform_)),
-                                 p_error};
-        finish(e, ellipsoid_area(e));
+        const EllipsoidEmitter e{id_, center, r, std::fabs(determinant(transform_)), p_error};
+        finish(e, ellipsoid_area(e, data_.object_from_world));
     }
 
     void operator()(const Rectangle& r) {
@@ -126,7 +125,7 @@ private:
     }
 
     /// By the midpoint rule over the object's sphere: area is for statistics and light choice, not for densities.
-    static double ellipsoid_area(const EllipsoidEmitter& e) {
+    static double ellipsoid_area(const EllipsoidEmitter& e, const Affine& object_from_world) {
         constexpr int kRings = 64, kSectors = 128;
         double sum = 0;
         for (int ring = 0; ring < kRings; ++ring) {
@@ -134,7 +133,7 @@ private:
             for (int sector = 0; sector < kSectors; ++sector) {
                 const double phi = 2 * std::numbers::pi * (sector + 0.5) / kSectors;
                 const Vec3d n{r * math::cos(phi), r * math::sin(phi), z};
-                sum += e.abs_determinant * length(transform_normal_by_inverse(e.object_from_world, n));
+                sum += e.abs_determinant * length(transform_normal_by_inverse(object_from_world, n));
             }
         }
         return 4 * std::numbers::pi * e.radius * e.radius * sum / (kRings * kSectors);
@@ -150,7 +149,7 @@ private:
     const ShadingScene& scene_;
     InstanceId id_;
     const Instance& instance_;
-    const ShadingScene::InstanceData& data_;
+    const ShadingScene::TransformData& data_;
     const Affine& transform_;
     ShadingScene::LightData& out_;
 };
@@ -221,7 +220,12 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
         ShadingScene out;
         out.scene = std::move(scene);
         out.instances.reserve(out.scene.instances.size());
-        for (const Instance& instance : out.scene.instances) out.instances.push_back(instance_data(instance));
+        for (const Instance& instance : out.scene.instances) {
+            out.instances.emplace_back();
+            if (is_identity(instance.world_from_object)) continue;
+            out.instances.back().transform = static_cast<uint32_t>(out.transforms.size());
+            out.transforms.push_back(transform_data(instance.world_from_object));
+        }
         out.lights.reserve(out.scene.lights.size());
         LightBuilder lights(out, diagnostics);
         for (const Light& light : out.scene.lights) lights.add(light);

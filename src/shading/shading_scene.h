@@ -21,21 +21,23 @@ inline constexpr uint32_t kNoLight = 0xffffffffu;
 struct ShadingScene {
     Scene scene;
 
-    struct InstanceData {
+    struct TransformData {
         Affine object_from_world;
         bool identity = true;
-        bool flips = false;              ///< the transform mirrors: orientation by winding turns around
-        uint32_t area_light = kNoLight;  ///< index into scene.lights
+        bool flips = false;  ///< the transform mirrors: orientation by winding turns around
         /// (|M| |M⁻¹|)² row by row, M the linear part of world_from_object: how much the rounding errors of going to
         /// the object's space and back are magnified at most.
         std::array<double, 9> round_trip{1, 0, 0, 0, 1, 0, 0, 0, 1};
     };
+    struct InstanceData {
+        uint32_t transform = 0;          ///< index into transforms
+        uint32_t area_light = kNoLight;  ///< index into scene.lights
+    };
     std::vector<InstanceData> instances;
+    std::vector<TransformData> transforms{1};  ///< the identity, which all that have it share, then one per instance
+    const TransformData& transform_of(uint32_t instance) const { return transforms[instances[instance].transform]; }
 
     struct LightData {
-        /// For area lights on meshes: cumulative world-space triangle areas, ascending by index; empty for other
-        /// lights.
-        std::vector<double> cumulative_area;
         double area = 0;                      ///< world-space, of the whole light; 0 for lights that are no area lights
         Emitter emitter;                      ///< for area lights: the surface in world space
         Vec3d direction;                      ///< for spots and directional lights: where they point, unit length

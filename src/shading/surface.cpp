@@ -103,7 +103,7 @@ float next_after(float x, bool up) {
 
 SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hit) noexcept {
     const Instance& placed = scene.scene.instances[hit.instance];
-    const ShadingScene::InstanceData& instance = scene.instances[hit.instance];
+    const ShadingScene::TransformData& instance = scene.transform_of(hit.instance);
     const LocalRay local = local_ray(instance, ray);
     const LocalSurface s = std::visit(
         [&](const auto& shape) {

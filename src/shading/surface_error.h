@@ -24,7 +24,7 @@ inline double max_component(Vec3d v) { return max_of(v.x, max_of(v.y, v.z)); }
 /// |M| 2^-24 |p_object| in the world. What is done in double (both transforms, and inverse and transform being inverse
 /// to each other only up to rounding) is below 2^-45 (|M| |M⁻¹|)² (|p| + |translation|), and that term also holds the
 /// errors of second order of the float roundings.
-inline Vec3 surface_error(const Affine& world_from_object, const ShadingScene::InstanceData& instance, Vec3d p_object,
+inline Vec3 surface_error(const Affine& world_from_object, const ShadingScene::TransformData& instance, Vec3d p_object,
                           Vec3d p_world, double slack) {
     const Vec3d world = abs(p_world), object = abs(p_object);
     if (instance.identity)
@@ -55,7 +55,7 @@ inline double flat_slack(double size, double reach, double cross) {
 struct LocalRay {
     Vec3d o, d;
 };
-inline LocalRay local_ray(const ShadingScene::InstanceData& instance, const Ray& ray) {
+inline LocalRay local_ray(const ShadingScene::TransformData& instance, const Ray& ray) {
     if (instance.identity) return {ray.o, ray.d};
     return {static_cast<Vec3>(transform_point(instance.object_from_world, ray.o)),
             static_cast<Vec3>(transform_vector(instance.object_from_world, ray.d))};

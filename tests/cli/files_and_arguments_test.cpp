@@ -229,13 +229,6 @@ TEST_F(FilesAndArguments, ConvertCountsWhatAPngCannotShow) {
     EXPECT_NE(o.err.find("(2 times)"), std::string::npos) << o.err;
 }
 
-/// The sanitizers reserve more address space than any limit would leave.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 TEST_F(FilesAndArguments, TooLittleMemoryIsSaidAndNothingIsWritten) {
     if (kSanitized) GTEST_SKIP() << "under a sanitizer";
     std::string model;

@@ -23,6 +23,7 @@ struct Outcome {
     int code = -1;   ///< exit code
     int signal = 0;  ///< that ended it, 0: none
     std::string out, err;
+    uint64_t peak_bytes = 0;  ///< the most memory that was resident
 };
 
 template <uint64_t kBytes>
@@ -37,6 +38,13 @@ void limit_memory() {
     ::setrlimit(RLIMIT_AS, &limit);
 }
 
+/// The sanitizers reserve more address space than any limit would leave, and keep what was freed.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 inline void full_stdout() { ::dup2(::open("/dev/full", O_WRONLY), 1); }
 
 /// The program as a child process; output goes to files in `folder`, which is also its working directory.
@@ -50,6 +58,7 @@ public:
         std::vector<char*> argv;
         for (std::string& a : all) argv.push_back(a.data());
         argv.push_back(nullptr);
+        std::filesystem::remove(err_);  // shows_progress must not see that of an earlier process
         pid_ = ::fork();
         if (pid_ != 0) return;
         const int null = ::open("/dev/null", O_RDONLY), out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
@@ -76,11 +85,20 @@ public:
         }
         return false;
     }
+    /// Waits for it to stand still after a SIGSTOP; false when it ended before that.
+    bool stands_still() {
+        int status = 0;
+        if (::waitpid(pid_, &status, WUNTRACED) != pid_) return false;
+        if (!WIFSTOPPED(status)) pid_ = 0;
+        return WIFSTOPPED(status);
+    }
     Outcome wait() {
         int status = 0;
-        ::waitpid(pid_, &status, 0);
+        rusage usage{};
+        ::wait4(pid_, &status, 0, &usage);
         pid_ = 0;
         Outcome o;
+        o.peak_bytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
         if (WIFEXITED(status)) o.code = WEXITSTATUS(status);
         if (WIFSIGNALED(status)) o.signal = WTERMSIG(status);
         o.out = slurp(out_), o.err = slurp(err_);

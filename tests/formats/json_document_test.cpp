@@ -125,6 +125,10 @@ TEST(JsonDocument, EncodingsOtherThanUtf8AreNamed) {
     expect_refused(std::string_view("\xfe\xff\0{\0}", 6), {1, 1}, "UTF-16 (big-endian)", "UTF-8");
     expect_refused(std::string_view("{\0}\0", 4), {1, 1}, "UTF-16 (little-endian)");
     expect_refused(std::string_view("\0{\0}", 4), {1, 1}, "UTF-16 (big-endian)");
+    expect_refused(std::string_view("\xff\xfe\0\0{\0\0\0", 8), {1, 1}, "UTF-32 (little-endian)", "UTF-8");
+    expect_refused(std::string_view("\0\0\xfe\xff\0\0\0{", 8), {1, 1}, "UTF-32 (big-endian)", "UTF-8");
+    expect_refused(std::string_view("{\0\0\0}\0\0\0", 8), {1, 1}, "UTF-32 (little-endian)");
+    expect_refused(std::string_view("\0\0\0{\0\0\0}", 8), {1, 1}, "UTF-32 (big-endian)");
     expect_refused(std::string_view("{\"a\":\n\"x\0y\"}", 12), {2, 3}, "NUL");
     expect_refused(std::string_view("{}\0", 3), {1, 3}, "NUL");
 }

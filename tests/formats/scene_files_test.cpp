@@ -35,6 +35,27 @@ protected:
     TemporaryFolder folder_;
 };
 
+/// What stands between a fence that begins with `fence` and the next one.
+std::string code_block(const std::string& text, const std::string& fence, size_t from = 0) {
+    const size_t begin = text.find(fence, from);
+    if (begin == std::string::npos) return {};
+    const size_t first = begin + fence.size();
+    return text.substr(first, text.find("```", first) - first);
+}
+
+// What a newcomer types first, and the mistake that is shown there.
+TEST(Readme, ItsSceneLoadsAndItsMistakeReadsAsPrinted) {
+    const std::string readme = slurp(source_folder() / "README.md");
+    std::string scene = code_block(readme, "```json\n");
+    EXPECT_EQ(load_good(scene).scene.instances.size(), 3u);
+    const size_t radius = scene.find("radius");
+    ASSERT_NE(radius, std::string::npos);
+    const std::string message = code_block(readme, "```\n", readme.find("Mistakes are shown"));
+    const auto refused = load_scene_json(scene.replace(radius, 6, "radios"), "first.json", {});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().str() + "\n", message);
+}
+
 TEST_F(SceneFiles, AModelThatIsNamedTwiceIsLoadedOnce) {
     std::filesystem::create_directory(folder_.path() / "sub");
     const LoadedScene loaded =

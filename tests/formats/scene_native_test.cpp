@@ -179,6 +179,17 @@ TEST(NativeScene, InstancesShareOneMesh) {
     EXPECT_EQ(s.instances[1].world_from_object, translation(1, 0, 0));
 }
 
+// A list of names is as long as what it names, or empty when nothing has one.
+TEST(NativeScene, WhatHasNoNamesKeepsNone) {
+    const std::string sphere = R"({"type": "sphere"})", named = R"({"type": "sphere", "name": "it"})";
+    const auto names = [&](const std::string& objects) {
+        return load_good(scene_with("\"objects\": [" + objects + "]")).scene.names.instances;
+    };
+    EXPECT_EQ(names(sphere + "," + sphere), std::vector<std::string>{});
+    EXPECT_EQ(names(sphere + "," + sphere + "," + named), (std::vector<std::string>{"", "", "it"}));
+    EXPECT_EQ(names(named + "," + sphere), (std::vector<std::string>{"it", ""}));
+}
+
 TEST(NativeScene, ObjectsHaveNamesMaterialsAndLights) {
     const LoadedScene loaded = load_good(scene_with(R"("materials": {"m": {"type": "mirror"}}, "objects": [
         {"type": "sphere", "name": "one", "material": "m"}, {"type": "sphere", "material": {"type": "glass"}},

@@ -101,6 +101,9 @@ TEST(SceneTransform, WhatCannotBeATransformIsRefused) {
     refused("§{\"matrix\": [[1, 0, 0], [2, 0, 0], [0, 0, 1]]}", "flattens the object");
     refused("§[[1, 0, 0], [1, 0, 0], [0, 0, 1]]", "flattens the object");
     refused("§{\"scale\": 1e-120}", "flattens the object");
+    refused("§[{\"scale\": 1e15}, {\"scale\": 1e15}, {\"scale\": 10}]", "at most by 1e30");
+    refused("§[{\"scale\": 1e-15}, {\"scale\": 1e-15}, {\"scale\": 0.1}]", "at least by 1e-30");
+    EXPECT_EQ(transform_of(R"([{"scale": 1e15}, {"scale": 1e-15}, {"scale": 10}])"), scaling(10, 10, 10));
     refused("{\"look_at\": §{\"origin\": [0, 0, 0]}}", "missing key 'target' in 'look_at'");
     refused("{\"look_at\": {\"origin\": [0, 0, 1], \"target\": §[0, 0, 1]}}", "'target' is equal to 'origin'");
     refused("{\"look_at\": §{\"origin\": [0, 0, 0], \"target\": [0, 1, 0]}}", "'up' must not be zero or parallel");

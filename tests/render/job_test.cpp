@@ -1,7 +1,13 @@
 // The picture is a function of scene, settings and seed alone; jobs can be watched and stopped.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -172,6 +178,43 @@ TEST(Job, DestroyingAJobStopsIt) {
         auto job = RenderJob::start(prepared(test::everything_scene()), settings, {3, 16, BvhBuilder::sah, 64});
         ASSERT_TRUE(job.ok());
     }
+}
+
+uint64_t entries(const char* folder) {
+    const std::filesystem::directory_iterator all(folder);
+    return static_cast<uint64_t>(std::distance(begin(all), end(all)));
+}
+
+uint64_t resident_bytes() {
+    uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages >> pages;
+    return pages * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// As a preview does: scenes come, are rendered for a while and dropped.
+TEST(Job, AHundredCancelledRendersLeaveNothingBehind) {
+    RenderSettings settings = small_settings();
+    settings.samples_per_pixel = kMaxSamplesPerPixel;
+    std::mt19937 random(1);
+    const auto render_for_a_while = [&] {
+        auto job = RenderJob::start(prepared(test::everything_scene()), settings, {3, 16, BvhBuilder::sah, 64});
+        ASSERT_TRUE(job.ok()) << job.error().str();
+        std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
+        (*job)->cancel();
+        if (random() % 2) {
+            ASSERT_TRUE((*job)->take().ok());
+        }
+    };
+    for (int i = 0; i < 20; ++i) render_for_a_while();  // whatever is kept for good is there after that
+    const uint64_t threads = entries("/proc/self/task"), files = entries("/proc/self/fd"), memory = resident_bytes();
+    for (int i = 0; i < 100; ++i) render_for_a_while();
+    EXPECT_EQ(entries("/proc/self/task"), threads);
+    EXPECT_EQ(entries("/proc/self/fd"), files);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what was freed
+    EXPECT_LT(resident_bytes(), memory + (16 << 20));                // one such job holds about as much
+#else
+    static_cast<void>(memory);
+#endif
 }
 
 TEST(Job, BadSamplesAreDroppedCountedAndReported) {

@@ -73,6 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                               s.shapes[1] = Disk{{}, {0, 0, 0}, 1};
                           }},
                     Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
+                    Fault{"beyond 1e30", [](Scene& s) { s.instances[0].world_from_object = scaling(1e31, 1, 1); }},
                     Fault{"singular or not finite",
                           [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
                     Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},

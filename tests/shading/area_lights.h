@@ -64,7 +64,7 @@ public:
     explicit LightSurface(const World& world)
         : world_(world),
           transform_(world.shading.scene.instances[0].world_from_object),
-          inverse_(world.shading.instances[0].identity ? Affine{} : *steradian::inverse(transform_)),
+          inverse_(world.shading.transform_of(0).identity ? Affine{} : *steradian::inverse(transform_)),
           shape_(world.shading.scene.shapes[0]) {
         if (const auto* id = std::get_if<MeshId>(&shape_)) mesh_ = &world.shading.scene.meshes[index(*id)];
     }

@@ -76,7 +76,7 @@ struct Count {
 std::optional<double> chord(const World& world, const SurfacePoint& from, Vec3 d) {
     const Scene& scene = world.shading.scene;
     const Sphere& sphere = std::get<Sphere>(scene.shapes[0]);
-    const Affine& inverse = world.shading.instances[0].object_from_world;
+    const Affine& inverse = world.shading.transform_of(0).object_from_world;
     const Vec3d n = normalize(transform_point(inverse, from.p) - Vec3d(sphere.center));
     const Vec3d direction = transform_vector(inverse, d);
     double error = 0;
@@ -89,7 +89,7 @@ std::optional<double> chord(const World& world, const SurfacePoint& from, Vec3 d
 
 /// Below this cosine with ng, rounding decides which side of the exact surface a direction points to: that of ng, and
 /// with a transform that of the direction in the object's space.
-double undecided_cosine(const ShadingScene::InstanceData& instance) {
+double undecided_cosine(const ShadingScene::TransformData& instance) {
     double most = 0;
     for (size_t r = 0; r < 3; ++r) {
         const double* row = &instance.round_trip[3 * r];
@@ -104,7 +104,7 @@ Count spawn_from(const World& world, bool is_sphere, Random& random, int hits) {
     const Accel::Bounds bounds = world.accel.bounds();
     const Vec3d middle = (Vec3d(bounds.lo) + Vec3d(bounds.hi)) * 0.5;
     const double size = length(Vec3d(bounds.hi) - Vec3d(bounds.lo));
-    const double tangent = undecided_cosine(world.shading.instances[0]);
+    const double tangent = undecided_cosine(world.shading.transform_of(0));
     int found = 0;
     for (int attempt = 0; attempt < 50 * hits && found < hits; ++attempt) {
         const Vec3d target = middle + random.direction() * (random.between(0, 0.4) * size);

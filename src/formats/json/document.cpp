@@ -81,16 +81,6 @@ std::string syntax_hint(rapidjson::ParseErrorCode code, std::string_view rest) {
     return {};
 }
 
-/// The encodings that are not UTF-8, told by their byte order mark or by the zeros that ASCII has in them.
-const char* foreign_encoding(std::string_view text) {
-    const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 1; };
-    if ((byte(0) == 0xff && byte(1) == 0xfe) || (byte(0) != 0 && byte(1) == 0 && text.size() > 1))
-        return "UTF-16 (little-endian)";
-    if ((byte(0) == 0xfe && byte(1) == 0xff) || (byte(0) == 0 && byte(1) != 0 && text.size() > 1))
-        return "UTF-16 (big-endian)";
-    return nullptr;
-}
-
 Error whole_text_error(const std::string& name, ErrorCode code, std::string message, std::string hint) {
     Error error;
     error.code = code;

@@ -21,6 +21,12 @@ struct ParseFailure {
     ErrorCode code = ErrorCode::bad_input;
 };
 
+/// Fails at the start of a text that is UTF-16 or UTF-32.
+inline void refuse_foreign_encoding(std::string_view text) {
+    if (const char* encoding = foreign_encoding(text))
+        throw ParseFailure{0, std::string("the text is ") + encoding + ", expected UTF-8", "save the file as UTF-8"};
+}
+
 /// A word of the file in quotes, fit for a message.
 inline std::string quoted(std::string_view word, size_t max_bytes = 40) {
     std::string out(1, '\'');

@@ -262,9 +262,7 @@ void LibraryReader::read_value(std::string_view keyword, Words& words) {
 }
 
 void LibraryReader::read() {
-    const std::string_view mark = text_.substr(0, 2);
-    if (mark == "\xff\xfe" || mark == "\xfe\xff")
-        throw ParseFailure{0, "the text is UTF-16, expected UTF-8", "save the file as UTF-8"};
+    refuse_foreign_encoding(text_);
     Lines lines(text_, text_.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0, text_.size());
     for (std::string_view line; lines.next(line);) {
         Words words(line);

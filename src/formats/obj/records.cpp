@@ -269,12 +269,6 @@ std::vector<size_t> cut(std::string_view text, size_t chunk_bytes) {
     return bounds;
 }
 
-void refuse_utf16(std::string_view text) {
-    const std::string_view mark = text.substr(0, 2);
-    if (mark == "\xff\xfe" || mark == "\xfe\xff")
-        throw ParseFailure{0, "the text is UTF-16, expected UTF-8", "save the file as UTF-8"};
-}
-
 /// Joins what the chunks found, in order: what a chunk did not say is as the chunks before it said.
 void join(std::vector<ChunkReader>& chunks, Records& all) {
     State carried;
@@ -298,7 +292,7 @@ void join(std::vector<ChunkReader>& chunks, Records& all) {
 }  // namespace
 
 Records read_records(std::string_view text, size_t chunk_bytes) {
-    refuse_utf16(text);
+    refuse_foreign_encoding(text);
     const std::vector<size_t> bounds = cut(text, chunk_bytes);
     const size_t chunks = bounds.size() - 1;
 

@@ -78,7 +78,8 @@ inline constexpr Range kEta{1e-3, 1e3};
 inline constexpr double kInverseSphere = 0.0795774715459476678844;  ///< 1 / 4π
 
 /// A list of steps, applied in the order of the list; an object with one or more steps, applied in the order in which
-/// they stand in the file; or a matrix by itself. Fails where the result would be singular.
+/// they stand in the file; or a matrix by itself. Fails where the result would be singular or beyond
+/// kMaxTransform.
 Affine read_transform(const Source& source, Value value);
 
 /// A file that the scene names, and the place to blame for it.

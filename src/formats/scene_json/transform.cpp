@@ -130,6 +130,9 @@ Affine read_transform(const Source& source, Value value) {
                     "'transform' must be a list of steps, an object or a matrix, got " + json::describe(value));
     }
     if (!inverse(total)) source.fail(value.offset(), "'transform' flattens the object: its matrix cannot be inverted");
+    if (!usable_inverse(total))
+        source.fail(value.offset(),
+                    "'transform' scales or moves the object too far: at most by 1e30, at least by 1e-30");
     return total;
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <variant>
+#include <vector>
 
 #include "math/vector.h"
 #include "steradian/scene.h"
@@ -20,6 +21,7 @@ struct ShadingScene;
 struct MeshEmitter {
     InstanceId instance{};
     MeshId mesh{};
+    std::vector<double> cumulative_area;  ///< of the triangles in world space, ascending by index
 };
 
 /// A sphere that is one in world space as well: sampled uniformly over the cone it fills, from inside over all
@@ -32,7 +34,7 @@ struct SphereEmitter {
 
 /// A sphere under a transform that is not a similarity: sampled uniformly over the object's sphere.
 struct EllipsoidEmitter {
-    Affine world_from_object, object_from_world;
+    InstanceId instance{};
     Vec3d center;  ///< in the object's space, like the radius
     double radius = 0;
     double abs_determinant = 0;

@@ -38,7 +38,7 @@ inline std::optional<Ray> shadow_ray_to_point(const SurfacePoint& from, Vec3 tar
 /// see that ray; not finite when it runs along the plane.
 inline double tangent_plane_distance(const LightContext& context, InstanceId id, const EmitterSample& at,
                                      const Ray& ray) {
-    const ShadingScene::InstanceData& instance = context.scene.instances[index(id)];
+    const ShadingScene::TransformData& instance = context.scene.transform_of(index(id));
     const LocalRay local = local_ray(instance, ray);
     if (instance.identity) return dot(at.n, at.p - local.o) / dot(at.n, local.d);
     const Vec3d p = transform_point(instance.object_from_world, at.p);

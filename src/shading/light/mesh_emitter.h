@@ -37,10 +37,9 @@ inline uint32_t choose_triangle(const std::vector<double>& cumulative, uint32_t 
 inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, const EmitterContext& context,
                                                    Vec3d from, uint32_t choice, Vec2 u) {
     const ShadingScene& scene = context.scene;
-    const ShadingScene::LightData& light = scene.lights[context.light];
-    const ShadingScene::InstanceData& instance = scene.instances[index(emitter.instance)];
+    const ShadingScene::TransformData& instance = scene.transform_of(index(emitter.instance));
     const Affine& transform = scene.scene.instances[index(emitter.instance)].world_from_object;
-    const uint32_t prim = choose_triangle(light.cumulative_area, choice);
+    const uint32_t prim = choose_triangle(emitter.cumulative_area, choice);
     const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], prim);
     const EmitterTriangle world = instance.identity ? object : world_triangle(transform, object);
     const warp::TrianglePoint b = warp::triangle(u);
@@ -54,7 +53,7 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     const double reach = max_component(abs(object.p0)) + size;
     out.p_error =
         surface_error(transform, instance, p_object, out.p, flat_slack(size, reach, length(object.scaled_normal())));
-    out.pdf = solid_angle_pdf(1 / light.area, out.p - from, out.n);
+    out.pdf = solid_angle_pdf(1 / scene.lights[context.light].area, out.p - from, out.n);
     return out;
 }
 

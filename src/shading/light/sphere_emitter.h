@@ -48,23 +48,24 @@ inline double emitter_pdf(const SphereEmitter& sphere, const EmitterContext&, Ve
 }
 
 /// Area in the world per area on the object's sphere, at a point with unit outward normal n in the world.
-inline double area_magnification(const EllipsoidEmitter& e, Vec3d n) {
-    const auto& m = e.world_from_object.m;
+inline double area_magnification(const EllipsoidEmitter& e, const ShadingScene& scene, Vec3d n) {
+    const auto& m = scene.scene.instances[index(e.instance)].world_from_object.m;
     const auto column = [&](size_t c) { return m[0][c] * n.x + m[1][c] * n.y + m[2][c] * n.z; };
     return e.abs_determinant / length(Vec3d{column(0), column(1), column(2)});
 }
 
-inline double emitter_pdf(const EllipsoidEmitter& e, const EmitterContext&, Vec3d from, Vec3d p, Vec3d n) {
+inline double emitter_pdf(const EllipsoidEmitter& e, const EmitterContext& context, Vec3d from, Vec3d p, Vec3d n) {
     const double object_area = 4 * std::numbers::pi * e.radius * e.radius;
-    return solid_angle_pdf(1 / (object_area * area_magnification(e, n)), p - from, n);
+    return solid_angle_pdf(1 / (object_area * area_magnification(e, context.scene, n)), p - from, n);
 }
 
 inline std::optional<EmitterSample> sample_emitter(const EllipsoidEmitter& e, const EmitterContext& context, Vec3d from,
                                                    uint32_t, Vec2 u) {
     const Vec3d n = warp::sphere(u);
     EmitterSample out;
-    out.p = transform_point(e.world_from_object, e.center + n * e.radius);
-    out.n = normalize(transform_normal_by_inverse(e.object_from_world, n));
+    out.p =
+        transform_point(context.scene.scene.instances[index(e.instance)].world_from_object, e.center + n * e.radius);
+    out.n = normalize(transform_normal_by_inverse(context.scene.transform_of(index(e.instance)).object_from_world, n));
     out.p_error = e.p_error;
     if (!emits_towards(out.p, out.n, from, context.two_sided)) return std::nullopt;
     out.pdf = emitter_pdf(e, context, from, out.p, out.n);

@@ -1,0 +1,114 @@
+// What a render will take, known before any of it is taken.
+#include "render/memory_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "render/film.h"
+#include "render/integrator.h"
+#include "shading/shading_scene.h"
+
+namespace steradian {
+namespace {
+
+/// Of the hierarchy, measured on meshes of one and of three million triangles (a third of the bytes are the nodes, the
+/// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
+constexpr uint64_t kTriangleBytes = 62, kTriangleBytesMedian = 84, kTriangleBuildBytes = 46;
+constexpr uint64_t kShapeBytes = 500, kShapeBuildBytes = 40;
+constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
+
+template <class T>
+uint64_t bytes_of(const std::vector<T>& v) {
+    return v.size() * sizeof(T);
+}
+
+uint64_t name_bytes(const Scene::Names& names) {
+    uint64_t bytes = 0;
+    for (const auto* list : {&names.images, &names.textures, &names.materials, &names.meshes, &names.shapes,
+                             &names.instances, &names.lights, &names.cameras})
+        bytes += bytes_of(*list);
+    return bytes;
+}
+
+uint64_t scene_bytes(const Scene& scene) {
+    uint64_t bytes = bytes_of(scene.images) + bytes_of(scene.textures) + bytes_of(scene.materials) +
+                     bytes_of(scene.meshes) + bytes_of(scene.shapes) + bytes_of(scene.instances) +
+                     bytes_of(scene.lights) + bytes_of(scene.cameras) + name_bytes(scene.names);
+    for (const Mesh& m : scene.meshes)
+        bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
+    for (const RawImage& image : scene.images) bytes += image.data.size();
+    return bytes;
+}
+
+/// What a light adds to the tables. Ids may be wrong: nothing has checked the scene yet.
+uint64_t table_bytes(const Scene& scene, const Light& light) {
+    if (const auto* area = std::get_if<AreaLight>(&light)) {
+        if (index(area->instance) >= scene.instances.size()) return 0;
+        const ShapeId shape = scene.instances[index(area->instance)].shape;
+        if (index(shape) >= scene.shapes.size()) return 0;
+        const auto* mesh = std::get_if<MeshId>(&scene.shapes[index(shape)]);
+        if (!mesh || index(*mesh) >= scene.meshes.size()) return 0;
+        return scene.meshes[index(*mesh)].indices.size() / 3 * sizeof(double);
+    }
+    if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky && sky->image) {
+        if (index(*sky->image) >= scene.images.size()) return 0;
+        const RawImage& image = scene.images[index(*sky->image)];
+        return uint64_t(image.width) * image.height * sizeof(double);
+    }
+    return 0;
+}
+
+}  // namespace
+
+MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& settings, const Execution& execution) {
+    uint64_t triangles = 0, shapes = 0;
+    for (const Mesh& mesh : scene.meshes) triangles += mesh.indices.size() / 3;
+    for (const Shape& shape : scene.shapes) shapes += !std::holds_alternative<MeshId>(shape);
+    const uint64_t instances = scene.instances.size();
+    MemoryEstimate out;
+    out.scene = scene_bytes(scene);
+    const uint64_t triangle = execution.bvh == BvhBuilder::median ? kTriangleBytesMedian : kTriangleBytes;
+    out.hierarchy = triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
+                    instances * sizeof(ShadingScene::InstanceData) +
+                    scene.lights.size() * sizeof(ShadingScene::LightData);
+    for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
+    out.build = triangles * kTriangleBuildBytes + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
+    out.picture = picture_bytes(settings, execution);
+    return out;
+}
+
+uint64_t picture_bytes(const RenderSettings& s, const Execution& e) {
+    const Crop window = window_of(s);
+    const uint64_t width = window.x1 - window.x0, height = window.y1 - window.y0;
+    // The sums go before a file's encoder takes its share, which is less.
+    return width * height * (sizeof(RgbSum) + 3 * sizeof(float)) +
+           Film::tile_bytes() * (width / e.tile_size + 2) * (height / e.tile_size + 2) +
+           workers_of(e) * direct_integrator_bytes(largest_tile(s, e));
+}
+
+Status check_picture_memory(const RenderSettings& s, const Execution& e) {
+    const Crop window = window_of(s);
+    const uint64_t needed = picture_bytes(s, e), available = available_memory();
+    if (needed <= available) return Ok{};
+    return make_error(ErrorCode::resources,
+                      fmt::format("{} pixels on {} threads need about {} MB of memory, {} MB are available",
+                                  uint64_t(window.x1 - window.x0) * (window.y1 - window.y0), workers_of(e),
+                                  needed >> 20, available >> 20),
+                      "render it in parts with --crop, or with fewer threads or smaller tiles");
+}
+
+Status check_scene_memory(const MemoryEstimate& estimate) {
+    const uint64_t needed = estimate.peak() - estimate.scene, available = available_memory();
+    if (needed <= available) return Ok{};
+    return make_error(
+        ErrorCode::resources,
+        fmt::format("the scene needs about {} MB of memory to be rendered ({} MB for its hierarchy, {} MB "
+                    "more while that is built, {} MB for the picture), {} MB are available",
+                    needed >> 20, estimate.hierarchy >> 20, estimate.build >> 20, estimate.picture >> 20,
+                    available >> 20));
+}
+
+}  // namespace steradian
