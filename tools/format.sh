@@ -19,5 +19,5 @@ esac
 failed=0
 while IFS= read -r -d '' file; do
     "$formatter" --style=file "${action[@]}" "$file" >/dev/null 2>&1 || { echo "not formatted: $file" && failed=1; }
-done < <(git ls-files -z -- '*.h' '*.cpp')
+done < <(git ls-files -z -- '*.h' '*.inl' '*.cpp')
 exit "$failed"

@@ -18,7 +18,7 @@ struct LeafEntry {
 /// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
 struct LevelView {
     const WideNode* nodes = nullptr;
-    const TriangleBlock* blocks = nullptr;
+    const TriangleBlock* blocks = nullptr;  ///< nullptr where there are no triangles
     const LeafEntry* entries = nullptr;
 };
 

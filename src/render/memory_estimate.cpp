@@ -14,10 +14,10 @@
 namespace steradian {
 namespace {
 
-/// Of the hierarchy, measured on meshes of one and of three million triangles (a third of the bytes are the nodes, the
+/// Of the hierarchy, measured on meshes of one to three million triangles (a fifth of the bytes are the nodes, the
 /// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
-constexpr uint64_t kTriangleBytes = 62, kTriangleBytesMedian = 84, kTriangleBuildBytes = 46;
-constexpr uint64_t kShapeBytes = 500, kShapeBuildBytes = 40;
+constexpr uint64_t kTriangleBytes = 55, kTriangleBytesMedian = 66, kTriangleBuildBytes = 75;
+constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
 constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
 
 template <class T>

@@ -1,9 +1,11 @@
-// The kernels: many rays at once through the two levels of hierarchies. Included once for each instruction set, inside a
-// namespace of its own and after its vectors (simd_*.inl).
+// The kernels: many rays at once through the two levels of hierarchies. Included once for each instruction set, inside
+// a namespace of its own and after its vectors (simd_*.inl).
 //
 // What bounds traversal is waiting: for nodes to come from memory, and for the outcome of one test before the next one
-// can start. So several rays are on their way at a time, each a small state machine (Flight); whenever one of them needs
-// a node or a leaf, its memory is requested and the others go on.
+// can start. So several rays are on their way at a time, each a small state machine (Flight); whenever one of them
+// needs a node or a leaf, its memory is requested and the others go on.
+//
+// What is on the path of every ray is inlined by force: a call costs all vector registers. What is rare is kept out.
 
 enum class Mode { closest, any, after };
 
@@ -23,13 +25,12 @@ struct alignas(64) Flight {
     uint32_t depth;      ///< of the stack
     LevelView level;
 
-    TriangleRay triangle_ray;  ///< computed when the first triangle is met, because it is dear
-    bool has_triangle_ray;
+    TriangleRay triangle_ray;  ///< where the level has triangles
     Hit best, after;
     float tmin;
     uint32_t instance;  ///< whose level this is; kNoHit on the upper level
-    Interval world;  ///< of the instance along the world's ray; the whole line where it is not transformed
-    uint32_t index;  ///< of the ray in its batch
+    Interval world;     ///< of the instance along the world's ray; the whole line where it is not transformed
+    uint32_t index;     ///< of the ray in its batch
     Ray ray, world_ray;
 
     float t_in[kStackSize];
@@ -47,7 +48,9 @@ struct alignas(64) Flight {
     }
 };
 
-inline void set_space(Flight& f, const Ray& ray) {
+/// Into a level, along a ray in its space.
+inline void set_level(Flight& f, const LevelView& level, const Ray& ray) {
+    f.level = level;
     f.ray = ray;
     const SlabRay slab(ray);
     f.octant_shift = 0;
@@ -57,7 +60,7 @@ inline void set_space(Flight& f, const Ray& ray) {
         f.far_plane[axis] = f.near_plane[axis] ^ sizeof(float[kWidth]);
         f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
     }
-    f.has_triangle_ray = false;
+    if (level.blocks) f.triangle_ray = TriangleRay(ray);
 }
 
 /// Inside a transformed instance t is clamped once more, and an end of the range that this can reach does not bound the
@@ -124,7 +127,7 @@ inline void identify(const Flight& f, const World& world, uint32_t id, Hit& hit)
 
 /// One triangle of a block, the long way.
 template <Mode kMode>
-bool test_triangle(Flight& f, const World& world, const TriangleBlock& block, uint32_t lane) {
+[[gnu::noinline]] bool test_triangle(Flight& f, const World& world, const TriangleBlock& block, uint32_t lane) {
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     TriangleCandidate c;
     if (block.prim[lane] == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
@@ -158,7 +161,7 @@ inline uint32_t settle_block(const Flight& f, const TriangleBlock& block, Float4
 
 /// intersect_triangle() for four triangles, operation by operation.
 template <Mode kMode>
-inline bool test_block(Flight& f, const World& world, const TriangleBlock& block) {
+[[gnu::always_inline]] inline bool test_block(Flight& f, const World& world, const TriangleBlock& block) {
     const TriangleRay& ray = f.triangle_ray;
     const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
     const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
@@ -204,7 +207,7 @@ inline bool test_block(Flight& f, const World& world, const TriangleBlock& block
 
 /// True when the query is done.
 template <Mode kMode>
-bool test_shape(Flight& f, const ShapesView& shapes, uint32_t instance, const LeafEntry& entry) {
+[[gnu::noinline]] bool test_shape(Flight& f, const ShapesView& shapes, uint32_t instance, const LeafEntry& entry) {
     const uint32_t prim = entry.prim;
     if (shapes.spheres) {
         const SphereCandidates c = intersect_sphere(f.ray, shapes.spheres[prim]);
@@ -220,11 +223,7 @@ bool test_shape(Flight& f, const ShapesView& shapes, uint32_t instance, const Le
 
 /// A run of blocks. True when the query is done.
 template <Mode kMode>
-inline bool visit_blocks(Flight& f, const World& world, uint32_t ref) {
-    if (!f.has_triangle_ray) {
-        f.triangle_ray = TriangleRay(f.ray);
-        f.has_triangle_ray = true;
-    }
+[[gnu::always_inline]] inline bool visit_blocks(Flight& f, const World& world, uint32_t ref) {
     const TriangleBlock* block = f.level.blocks + ChildRef::first(ref);
     for (const TriangleBlock* end = block + ChildRef::count(ref); block < end; ++block)
         if (test_block<kMode>(f, world, *block)) return true;
@@ -245,8 +244,8 @@ inline bool visit_shapes(Flight& f, const World& world, uint32_t ref) {
 template <Mode kMode>
 inline void to_upper_level(Flight& f, const World& world) {
     f.instance = kNoHit;
-    f.level = world.upper;
     f.world = {};
+    set_level(f, world.upper, f.world_ray);
     set_range<kMode>(f);
 }
 
@@ -255,30 +254,28 @@ template <Mode kMode>
 bool enter(Flight& f, const World& world, uint32_t instance) {
     const PlacedGeometry& placed = world.instances[instance];
     Interval range;
+    Ray ray = f.world_ray;
     if (!placed.identity) {
-        Ray object_ray;
-        range = slab_interval(placed.world, SlabRay(f.world_ray));
-        if (range.empty() || !placed.to_object(f.world_ray, object_ray)) return false;
-        set_space(f, object_ray);
+        range = slab_interval(placed.world, f.slab());
+        if (range.empty() || !placed.to_object(f.world_ray, ray)) return false;
     }
     f.world = range;
     f.instance = instance;
-    f.level = world.levels[placed.geometry];
+    set_level(f, world.levels[placed.geometry], ray);
     set_range<kMode>(f);
     f.next = ChildRef::node(0);
     return true;
 }
 
 template <Mode kMode>
-void leave(Flight& f, const World& world) {
-    if (!world.instances[f.instance].identity) set_space(f, f.world_ray);
+[[gnu::noinline]] void leave(Flight& f, const World& world) {
     to_upper_level<kMode>(f, world);
     f.next = pop<kMode>(f);
 }
 
 /// The first of a run of instances; the rest is pushed, and so is the way back.
 template <Mode kMode>
-void visit_instances(Flight& f, const World& world) {
+[[gnu::noinline]] void visit_instances(Flight& f, const World& world) {
     const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
     if (count > 1) f.push(ChildRef::leaf(ItemKind::instance, first + 1, count - 1));
     if (enter<kMode>(f, world, world.upper.entries[first].instance)) {
@@ -290,7 +287,7 @@ void visit_instances(Flight& f, const World& world) {
 
 /// Whatever is not a node. Leaves f.next behind.
 template <Mode kMode>
-inline void visit_other(Flight& f, const World& world) {
+[[gnu::always_inline]] inline void visit_other(Flight& f, const World& world) {
     bool done = false;
     if (ChildRef::kind(f.next) == ItemKind::block) [[likely]] {
         done = visit_blocks<kMode>(f, world, f.next);
@@ -315,7 +312,6 @@ inline void set_out(Flight& f, const World& world, const Ray& ray, uint32_t inde
     f.best.t = f.world_ray.tmax;
     f.depth = 0;
     f.push(kFinished);
-    set_space(f, f.world_ray);
     to_upper_level<kMode>(f, world);
     f.next = ChildRef::node(0);
 }
@@ -334,14 +330,14 @@ inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* afte
 }
 
 /// Asks for the memory of what comes next. Without a branch, as nobody can guess whether that is a node or a leaf; what
-/// is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes calls of functions that do nothing but
-/// prefetch, so this one must be inlined before it notices.)
-__attribute__((always_inline)) inline void prefetch(const Flight& f) {
+/// is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes calls
+/// of functions that do nothing but prefetch, so this one must be inlined before it notices.)
+[[gnu::always_inline]] inline void prefetch(const Flight& f) {
     const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
     const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), blocks = all_if(f.next < ChildRef::kFirstOther);
     const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(WideNode);
-    const uintptr_t block = reinterpret_cast<uintptr_t>(f.level.blocks) +
-                            (ChildRef::first(f.next) & blocks) * sizeof(TriangleBlock);
+    const uintptr_t block =
+        reinterpret_cast<uintptr_t>(f.level.blocks) + (ChildRef::first(f.next) & blocks) * sizeof(TriangleBlock);
     const char* place = reinterpret_cast<const char*>((block & leaf) | (node & ~leaf));
     __builtin_prefetch(place);
     __builtin_prefetch(place + 64);

@@ -20,7 +20,7 @@ struct alignas(64) Packet {
     uint64_t near_plane[3], far_plane[3];
     const WideNode* nodes;
 
-    Ray ray[kPacket];  ///< canonical
+    Ray ray[kPacket];   ///< canonical
     uint32_t first;     ///< index of the first ray in its batch
     Flight* flights;    ///< one for each ray, launched when a ray needs it
     uint32_t launched;  ///< a bit for each
@@ -70,7 +70,8 @@ inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
     Float8 in = Float8::all(p.least_start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         const Float8 inv_lo = Float8::all(p.inv_d_range[axis][0]), inv_hi = Float8::all(p.inv_d_range[axis][1]);
-        // (near - o) * inv_d is least for the origin farthest along the ray; (far - o) * inv_d is largest for the other.
+        // (near - o) * inv_d is least for the origin farthest along the ray; (far - o) * inv_d is largest for the
+        // other.
         const Float8 near = plane(p.near_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
         const Float8 far = plane(p.far_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
         in = larger(smaller(near * inv_lo, near * inv_hi), in);

@@ -1,5 +1,5 @@
-// Vectors for the kernels with AVX-512 (VL), still eight floats wide. Included inside the namespace of an instruction set. IEEE operations only, so that
-// every lane computes what the scalar expression computes.
+// Vectors for the kernels with AVX-512 (VL), still eight floats wide. Included inside the namespace of an instruction
+// set. IEEE operations only, so that every lane computes what the scalar expression computes.
 
 struct Float8 {
     __m256 v;
@@ -33,12 +33,8 @@ inline Float4 to_floats(Double4 a) { return {_mm256_cvtpd_ps(a.v)}; }
 inline Double4 larger(Double4 a, Double4 b) { return {_mm256_max_pd(a.v, b.v)}; }
 inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)}; }
 /// Bit i where a >= 0, or a <= 0, in lane i.
-inline uint32_t not_negative(Double4 a) {
-    return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_GE_OQ);
-}
-inline uint32_t not_positive(Double4 a) {
-    return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_LE_OQ);
-}
+inline uint32_t not_negative(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_GE_OQ); }
+inline uint32_t not_positive(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_LE_OQ); }
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
 /// Writes up to kWidth entries, whatever the number.

@@ -16,8 +16,8 @@ inline Float8 larger(Float8 a, Float8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_m
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) {
-    return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) |
-                                 _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi)) << 4);
+    return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) | _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi))
+                                                                                 << 4);
 }
 
 /// Bit i where a <= b in lane i.
@@ -42,13 +42,13 @@ inline Double4 smaller(Double4 a, Double4 b) { return {_mm_min_pd(a.lo, b.lo), _
 /// Bit i where a >= 0, or a <= 0, in lane i.
 inline uint32_t not_negative(Double4 a) {
     const __m128d zero = _mm_setzero_pd();
-    return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmpge_pd(a.lo, zero)) |
-                                 _mm_movemask_pd(_mm_cmpge_pd(a.hi, zero)) << 2);
+    return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmpge_pd(a.lo, zero)) | _mm_movemask_pd(_mm_cmpge_pd(a.hi, zero))
+                                                                                 << 2);
 }
 inline uint32_t not_positive(Double4 a) {
     const __m128d zero = _mm_setzero_pd();
-    return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmple_pd(a.lo, zero)) |
-                                 _mm_movemask_pd(_mm_cmple_pd(a.hi, zero)) << 2);
+    return static_cast<uint32_t>(_mm_movemask_pd(_mm_cmple_pd(a.lo, zero)) | _mm_movemask_pd(_mm_cmple_pd(a.hi, zero))
+                                                                                 << 2);
 }
 
 #include "accel/kernels/float16_pair.inl"
