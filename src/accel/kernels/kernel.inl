@@ -96,20 +96,26 @@ inline uint32_t pop(Flight& f) {
     return f.ref[f.depth];
 }
 
-/// slab_interval() for the children of a node, cut to [start, limit]. Pushes those that are met and goes on with the
-/// nearest.
-template <Mode kMode>
-inline void visit_node(Flight& f) {
-    const WideNode& node = f.level.nodes[f.next];
+/// slab_interval() for the children of a node, from the start of the range on.
+inline void test_children(const Flight& f, const WideNode& node, Float8& in, Float8& out) {
     const char* planes = reinterpret_cast<const char*>(&node);
     const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
-    Float8 in = Float8::all(f.start), out = Float8::all(kInfinity);
+    in = Float8::all(f.start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         const Float8 o = Float8::all(f.o[axis]), inv_d = Float8::all(f.inv_d[axis]);
         in = larger((plane(f.near_plane[axis]) - o) * inv_d, in);
         out = smaller((plane(f.far_plane[axis]) - o) * inv_d, out);
     }
     out = out * Float8::all(kFarScale) + Float8::all(kFarPad);
+}
+
+/// Pushes the children that are met and goes on with what is then on top, for a ray among many: without a branch, in
+/// the order that the node has stored.
+template <Mode kMode>
+inline void visit_node(Flight& f) {
+    const WideNode& node = f.level.nodes[f.next];
+    Float8 in, out;
+    test_children(f, node, in, out);
     if (kMode == Mode::any) {
         // One hit is as good as another: neither order nor distances matter, and the limit never falls.
         f.depth += push_met(at_most(in, out) & at_most(in, Float8::all(f.limit)), node, &f.ref[f.depth]);
@@ -117,6 +123,36 @@ inline void visit_node(Flight& f) {
         f.depth += push_met(in, out, f.limit, node, f.octant_shift, &f.t_in[f.depth], &f.ref[f.depth]);
     }
     f.next = pop<kMode>(f);
+}
+
+/// The same for a ray by itself, which has nothing else to do while a wrong guess is repaired: in the exact order of
+/// distance, and the nearest child does not go through the stack.
+template <Mode kMode>
+inline void visit_node_alone(Flight& f) {
+    const WideNode& node = f.level.nodes[f.next];
+    Float8 in, out;
+    test_children(f, node, in, out);
+    uint32_t met = at_most(in, out) & at_most(in, Float8::all(f.limit));
+    if (met == 0) {
+        f.next = pop<kMode>(f);
+        return;
+    }
+    alignas(32) float t_in[kWidth];
+    in.store(t_in);
+    auto nearest = static_cast<uint32_t>(__builtin_ctz(met));
+    const uint32_t base = f.depth;
+    for (met &= met - 1; met; met &= met - 1) {
+        auto child = static_cast<uint32_t>(__builtin_ctz(met));
+        if (t_in[child] < t_in[nearest]) std::swap(child, nearest);
+        uint32_t place = f.depth++;
+        for (; kMode != Mode::any && place > base && f.t_in[place - 1] < t_in[child]; --place) {
+            f.t_in[place] = f.t_in[place - 1];
+            f.ref[place] = f.ref[place - 1];
+        }
+        f.t_in[place] = t_in[child];
+        f.ref[place] = node.child[child];
+    }
+    f.next = node.child[nearest];
 }
 
 /// Whose triangle an entry of a block is.
@@ -421,7 +457,7 @@ inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
         if (ChildRef::is_leaf(f.next)) {
             visit_other<kMode>(f, world);
         } else {
-            visit_node<kMode>(f);
+            visit_node_alone<kMode>(f);
         }
     }
     return f.best.found() ? f.best : Hit{};
