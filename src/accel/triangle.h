@@ -25,6 +25,12 @@
 
 namespace steradian {
 
+/// The axis of the largest component of a direction.
+inline int dominant_axis(Vec3 d) {
+    const Vec3 size = abs(d);
+    return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+}
+
 /// A ray as the triangle test wants it.
 struct TriangleRay {
     double o[3];  ///< permuted: the last one is the axis of the largest direction component
@@ -35,8 +41,7 @@ struct TriangleRay {
     TriangleRay() = default;
     /// `ray` must be canonical.
     explicit TriangleRay(const Ray& ray) {
-        const Vec3 size = abs(ray.d);
-        const int z = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+        const int z = dominant_axis(ray.d);
         axis[0] = (z + 1) % 3, axis[1] = (z + 2) % 3, axis[2] = z;
         for (int i = 0; i < 3; ++i) o[i] = ray.o[axis[i]];
         d_z = ray.d[z];

@@ -29,3 +29,8 @@ inline float largest(Float16 a) {
     for (int i = 1; i < 8; ++i) out = max_of(v[i], out);
     return out;
 }
+
+/// What packets test triangles in: as many rays at a time as there are doubles in a register, or four.
+using Doubles = Double4;
+using Floats = Float4;
+inline constexpr uint32_t kGroup = 4;

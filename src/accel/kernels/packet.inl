@@ -2,9 +2,9 @@
 // kernel.inl.
 //
 // A node is first tested against intervals that contain all rays of the packet, and its children that survive against
-// every ray. A ray that is nearly alone takes what is left with it, onto its own stack, and goes on as every other
-// ray does (trace in kernel.inl). Boxes are tested by the same operations as there, and primitives by the same code, so
-// the answers are the same.
+// every ray. A leaf's triangles are tested against several rays at once. Rays that are nearly alone take what is left
+// with them, onto stacks of their own, and go on as every other ray does (trace in kernel.inl); and so does everything
+// that is not a triangle of the upper level. All of it computes the same operations as there.
 
 inline constexpr uint32_t kPacket = 16;
 
@@ -20,16 +20,42 @@ struct alignas(64) Packet {
     uint64_t near_plane[3], far_plane[3];
     const WideNode* nodes;
 
-    Ray ray[kPacket];   ///< canonical
-    uint32_t first;     ///< index of the first ray in its batch
-    Flight* flights;    ///< one for each ray, launched when a ray needs it
-    uint32_t launched;  ///< a bit for each
+    // TriangleRay for every ray, where all have the same axes.
+    double triangle_o[3][kPacket], shear_x[kPacket], shear_y[kPacket], d_z[kPacket];
+    bool same_axes;
+    int axis[3];
+    /// The nearest triangle so far, by its id on the upper level; its t is the limit.
+    uint32_t best[kPacket];
+    float u[kPacket], v[kPacket];
+
+    Ray ray[kPacket];  ///< canonical
+    Flight* flights;   ///< one for each ray, set out when a ray needs it
+    uint32_t first;    ///< index of the first ray in its batch
+    uint32_t set_out;  ///< a bit for each
 };
 
 struct PacketEntry {
     alignas(64) float t_in[kPacket];
     uint32_t ref, rays;
 };
+
+/// The constructor of TriangleRay for all rays at once.
+inline void prepare_triangles(Packet& p) {
+    const int z = dominant_axis(p.ray[0].d);
+    p.axis[0] = (z + 1) % 3, p.axis[1] = (z + 2) % 3, p.axis[2] = z;
+    p.same_axes = true;
+    for (uint32_t i = 0; i < kPacket; ++i) {
+        const Ray& ray = p.ray[i];
+        p.same_axes = p.same_axes && dominant_axis(ray.d) == z;
+        for (int k = 0; k < 3; ++k) p.triangle_o[k][i] = ray.o[p.axis[k]];
+        p.shear_x[i] = ray.d[p.axis[0]], p.shear_y[i] = ray.d[p.axis[1]], p.d_z[i] = ray.d[z];
+    }
+    for (uint32_t i = 0; i < kPacket; i += kGroup) {
+        const Doubles d_z = Doubles::load(p.d_z + i);
+        (Doubles::load(p.shear_x + i) / d_z).store(p.shear_x + i);
+        (Doubles::load(p.shear_y + i) / d_z).store(p.shear_y + i);
+    }
+}
 
 /// False when a ray hits nothing by definition, or the directions have different signs.
 inline bool gather(Packet& p, const World& world, const Ray* rays) {
@@ -42,6 +68,7 @@ inline bool gather(Packet& p, const World& world, const Ray* rays) {
             signs[axis] += std::signbit(ray.d[axis]);
         }
         p.start[i] = ray.tmin, p.limit[i] = ray.tmax;
+        p.best[i] = kNoHit;
     }
     p.octant_shift = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -58,7 +85,8 @@ inline bool gather(Packet& p, const World& world, const Ray* rays) {
     }
     p.least_start = least(Float16::load(p.start));
     p.nodes = world.upper.nodes;
-    p.launched = 0;
+    p.set_out = 0;
+    prepare_triangles(p);
     return true;
 }
 
@@ -96,24 +124,102 @@ inline uint32_t test_child(const Packet& p, const WideNode& node, uint32_t child
     return rays & at_most(in, out) & at_most(in, Float16::load(p.limit));
 }
 
+/// A triangle that ray i meets at a settled t within its range.
 template <Mode kMode>
-inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
-    Flight& f = p.flights[i];
-    if (p.launched >> i & 1) return f;
-    p.launched |= 1u << i;
-    set_out<kMode>(f, world, p.ray[i], p.first + i);
-    return f;
+inline void take(Packet& p, uint32_t i, float t, uint32_t id, const EdgeFunctions& edges) {
+    // Ids of the upper level ascend with (instance, primitive).
+    if (t == p.limit[i] && p.best[i] < id) return;
+    p.best[i] = id;
+    // Nothing is left to do for a ray that is done: no box begins before -infinity.
+    p.limit[i] = kMode == Mode::any ? -kInfinity : t;
+    if (kMode != Mode::any) edges.weights(p.u[i], p.v[i]);
+}
+
+/// One ray and one triangle, the long way.
+template <Mode kMode>
+[[gnu::noinline]] void test_pair(Packet& p, uint32_t i, Vec3 p0, Vec3 p1, Vec3 p2, uint32_t id) {
+    const TriangleRay ray(p.ray[i]);
+    const EdgeFunctions edges = edge_functions(ray, p0, p1, p2);
+    float t = 0;
+    if (!edges.inside() ||
+        !settle(edges.candidate(ray.d_z).t, slab_interval(triangle_bounds(p0, p1, p2), SlabRay(p.ray[i])), {}, t))
+        return;
+    if (p.start[i] <= t && t <= p.limit[i]) take<kMode>(p, i, t, id, edges);
+}
+
+/// One triangle against kGroup rays from `first` on, of which those with a bit in `rays` count: test_block with the
+/// parts of rays and triangles exchanged.
+template <Mode kMode>
+inline void test_group(Packet& p, const Vec3 corner[3], const Box& own, uint32_t id, uint32_t first, uint32_t rays) {
+    const Doubles o[3] = {Doubles::load(p.triangle_o[0] + first), Doubles::load(p.triangle_o[1] + first),
+                          Doubles::load(p.triangle_o[2] + first)};
+    const Doubles shear_x = Doubles::load(p.shear_x + first), shear_y = Doubles::load(p.shear_y + first);
+    Doubles x[3], y[3], z[3];
+    for (int i = 0; i < 3; ++i) {
+        z[i] = Doubles::all(corner[i][p.axis[2]]) - o[2];
+        x[i] = (Doubles::all(corner[i][p.axis[0]]) - o[0]) - shear_x * z[i];
+        y[i] = (Doubles::all(corner[i][p.axis[1]]) - o[1]) - shear_y * z[i];
+    }
+    const Doubles u = x[2] * y[1] - y[2] * x[1];
+    const Doubles v = x[0] * y[2] - y[0] * x[2];
+    const Doubles w = x[1] * y[0] - y[1] * x[0];
+    const Doubles low = smaller(smaller(u, v), w), high = larger(larger(u, v), w);
+    const uint32_t not_below = not_negative(low), not_above = not_positive(high);
+    rays &= not_below | not_above;
+    if (rays == 0) return;
+    // The sign of a difference that came out as 0 is still open.
+    const uint32_t open = rays & ((not_below & not_positive(low)) | (not_above & not_negative(high)));
+    for (uint32_t rest = open; rest; rest &= rest - 1) {
+        const uint32_t i = first + static_cast<uint32_t>(__builtin_ctz(rest));
+        test_pair<kMode>(p, i, corner[0], corner[1], corner[2], id);
+    }
+    rays &= ~open;
+    const Doubles sum = u + v + w;
+    const Floats t = to_floats((u * z[0] + v * z[1] + w * z[2]) / (sum * Doubles::load(p.d_z + first)));
+    Floats in = Floats::all(-kInfinity), out = Floats::all(kInfinity);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Floats origin = Floats::load(p.o[axis] + first), inv_d = Floats::load(p.inv_d[axis] + first);
+        in = larger((Floats::all(p.negative[axis] ? own.hi[axis] : own.lo[axis]) - origin) * inv_d, in);
+        out = smaller((Floats::all(p.negative[axis] ? own.lo[axis] : own.hi[axis]) - origin) * inv_d, out);
+    }
+    out = out * Floats::all(kFarScale) + Floats::all(kFarPad);
+    const Floats settled = smaller(larger(t, in), out) + Floats::all(0);
+    rays &= at_most(in, out) & at_most(Floats::load(p.start + first), settled) &
+            at_most(settled, Floats::load(p.limit + first)) &
+            at_most(settled, Floats::all(std::numeric_limits<float>::max()));
+    if (rays == 0) return;
+    alignas(64) float ts[kGroup];
+    alignas(64) double us[kGroup], vs[kGroup], ws[kGroup];
+    settled.store(ts);
+    u.store(us), v.store(vs), w.store(ws);
+    for (; rays; rays &= rays - 1) {
+        const auto k = static_cast<uint32_t>(__builtin_ctz(rays));
+        take<kMode>(p, first + k, ts[k], id, {us[k], vs[k], ws[k], {}});
+    }
 }
 
 /// The triangles of a leaf against the given rays.
 template <Mode kMode>
 inline void visit_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays) {
-    for (; rays; rays &= rays - 1) {
-        const auto i = static_cast<uint32_t>(__builtin_ctz(rays));
-        Flight& f = flight_of<kMode>(p, world, i);
-        // Nothing is left to do for a ray that is done: no box begins before -infinity.
-        p.limit[i] = visit_blocks<kMode>(f, world, ref) ? -kInfinity : f.limit;
-    }
+    const TriangleBlock* block = world.upper.blocks + ChildRef::first(ref);
+    for (const TriangleBlock* end = block + ChildRef::count(ref); block < end; ++block)
+        for (uint32_t lane = 0; lane < kBlock && block->prim[lane] != kNoHit; ++lane) {
+            const Vec3 corner[3] = {block->corner(0, lane), block->corner(1, lane), block->corner(2, lane)};
+            const Box own = triangle_bounds(corner[0], corner[1], corner[2]);
+            for (uint32_t first = 0; first < kPacket; first += kGroup) {
+                const uint32_t group = rays >> first & ((1u << kGroup) - 1);
+                if (group) test_group<kMode>(p, corner, own, block->prim[lane], first, group);
+            }
+        }
+}
+
+template <Mode kMode>
+inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
+    Flight& f = p.flights[i];
+    if (p.set_out >> i & 1) return f;
+    p.set_out |= 1u << i;
+    set_out<kMode>(f, world, p.ray[i], p.first + i);
+    return f;
 }
 
 /// Every one of the given rays takes the subtree onto its own stack.
@@ -135,10 +241,12 @@ inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
     uint32_t ref = ChildRef::node(0), rays = (1u << kPacket) - 1;
     const float* t_in = p.start;
     while (true) {
-        if (ChildRef::is_leaf(ref) && ChildRef::kind(ref) == ItemKind::block) {
-            visit_leaf<kMode>(p, world, ref, rays);
-        } else if (ChildRef::is_leaf(ref) || __builtin_popcount(rays) <= kAlone) {
+        const bool leaf = ChildRef::is_leaf(ref);
+        const bool triangles = leaf && ChildRef::kind(ref) == ItemKind::block && p.same_axes;
+        if (__builtin_popcount(rays) <= kAlone || (leaf && !triangles)) {
             part<kMode>(p, world, ref, rays, t_in);
+        } else if (leaf) {
+            visit_leaf<kMode>(p, world, ref, rays);
         } else {
             const WideNode& node = p.nodes[ref];
             const uint32_t maybe = test_intervals(p, node);
@@ -160,15 +268,24 @@ inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
     }
 }
 
+/// What ray i has hit as part of the packet.
+inline Hit hit_of(const Packet& p, const World& world, uint32_t i) {
+    if (p.best[i] == kNoHit) return {};
+    Hit hit{p.limit[i], p.u[i], p.v[i], p.best[i]};
+    hit.instance = world.identify(hit.prim);
+    return hit;
+}
+
 /// What a ray goes on with after its packet.
 template <Mode kMode>
-inline void go_on(Flight& f) {
+inline void go_on(Flight& f, const Hit& hit) {
+    if (hit.found()) f.best = hit, f.limit = hit.t;
     // What was left behind first is nearest.
     for (uint32_t a = 1, b = f.depth - 1; a < b; ++a, --b) {
         std::swap(f.ref[a], f.ref[b]);
         std::swap(f.t_in[a], f.t_in[b]);
     }
-    f.next = kMode == Mode::any && f.best.found() ? kFinished : pop<kMode>(f);
+    f.next = pop<kMode>(f);
 }
 
 /// sink(index, hit) for every ray, in any order.
@@ -190,12 +307,17 @@ inline void trace_coherent(const World& world, const Ray* rays, size_t count, Si
         if (whole) trace_packet<kMode>(packet, world, stack);
         for (uint32_t i = 0; i < kPacket && next + i < count; ++i) {
             Flight& f = flights[used + i];
-            if (whole ? (packet.launched >> i & 1) == 0
-                      : !launch<kMode>(f, world, rays[next + i], nullptr, static_cast<uint32_t>(next + i))) {
+            if (whole) {
+                const Hit hit = hit_of(packet, world, i);
+                if ((packet.set_out >> i & 1) == 0 || (kMode == Mode::any && hit.found())) {
+                    sink(next + i, hit);
+                    continue;
+                }
+                go_on<kMode>(f, hit);
+            } else if (!launch<kMode>(f, world, rays[next + i], nullptr, static_cast<uint32_t>(next + i))) {
                 sink(next + i, Hit{});
                 continue;
             }
-            if (whole) go_on<kMode>(f);
             queues.add(f);
         }
         used += kPacket;

@@ -75,3 +75,24 @@ inline float largest(Float16 a) { return _mm512_reduce_max_ps(a.v); }
 inline Float16 larger(Float16 a, Float16 b) { return {_mm512_max_ps(a.v, b.v)}; }
 inline Float16 smaller(Float16 a, Float16 b) { return {_mm512_min_ps(a.v, b.v)}; }
 inline uint32_t at_most(Float16 a, Float16 b) { return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
+
+struct Double8 {
+    __m512d v;
+    static Double8 load(const double* p) { return {_mm512_load_pd(p)}; }
+    static Double8 all(double x) { return {_mm512_set1_pd(x)}; }
+    void store(double* p) const { _mm512_store_pd(p, v); }
+};
+inline Double8 operator+(Double8 a, Double8 b) { return {_mm512_add_pd(a.v, b.v)}; }
+inline Double8 operator-(Double8 a, Double8 b) { return {_mm512_sub_pd(a.v, b.v)}; }
+inline Double8 operator*(Double8 a, Double8 b) { return {_mm512_mul_pd(a.v, b.v)}; }
+inline Double8 operator/(Double8 a, Double8 b) { return {_mm512_div_pd(a.v, b.v)}; }
+inline Float8 to_floats(Double8 a) { return {_mm512_cvtpd_ps(a.v)}; }
+inline Double8 larger(Double8 a, Double8 b) { return {_mm512_max_pd(a.v, b.v)}; }
+inline Double8 smaller(Double8 a, Double8 b) { return {_mm512_min_pd(a.v, b.v)}; }
+inline uint32_t not_negative(Double8 a) { return _mm512_cmp_pd_mask(a.v, _mm512_setzero_pd(), _CMP_GE_OQ); }
+inline uint32_t not_positive(Double8 a) { return _mm512_cmp_pd_mask(a.v, _mm512_setzero_pd(), _CMP_LE_OQ); }
+
+/// What packets test triangles in: as many rays at a time as there are doubles in a register.
+using Doubles = Double8;
+using Floats = Float8;
+inline constexpr uint32_t kGroup = 8;

@@ -33,6 +33,7 @@ struct Double4 {
         const float32x4_t floats = vld1q_f32(p);
         return {vcvt_f64_f32(vget_low_f32(floats)), vcvt_high_f64_f32(floats)};
     }
+    static Double4 load(const double* p) { return {vld1q_f64(p), vld1q_f64(p + 2)}; }
     static Double4 all(double x) { return {vdupq_n_f64(x), vdupq_n_f64(x)}; }
     void store(double* p) const { vst1q_f64(p, lo), vst1q_f64(p + 2, hi); }
 };

@@ -29,6 +29,7 @@ struct Double4 {
         const __m128 floats = _mm_load_ps(p);
         return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
     }
+    static Double4 load(const double* p) { return {_mm_load_pd(p), _mm_load_pd(p + 2)}; }
     static Double4 all(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
     void store(double* p) const { _mm_store_pd(p, lo), _mm_store_pd(p + 2, hi); }
 };
