@@ -77,11 +77,11 @@ quick() {
     run_tests 'Tests' test
 
     part 'Configure with address and undefined-behaviour checks' configure asan || return 0
-    part 'Build the parsers with these checks' build asan "${sanitized_quickly[@]/#/test_}" || return 0
-    run_tests 'Tests of the parsers with these checks' asan --tests-regex "^($(IFS='|' && echo "${sanitized_quickly[*]}"))\\."
+    part 'Build parsers and kernels with these checks' build asan "${sanitized_quickly[@]/#/test_}" || return 0
+    run_tests 'Tests of parsers and kernels with these checks' asan --tests-regex "^($(IFS='|' && echo "${sanitized_quickly[*]}"))\\."
 }
-# The layers that read foreign bytes, and what they stand on.
-sanitized_quickly=(base math image formats meshes)
+# The layers that read foreign bytes, what they stand on, and the ray kernels, which look at memory in many ways.
+sanitized_quickly=(base math image formats meshes accel)
 
 all() {
     part 'Install missing packages' "$repository/tools/setup.sh" all || return 0

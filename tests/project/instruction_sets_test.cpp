@@ -1,5 +1,5 @@
-// Only the kernels of an instruction set may use it. An inline function of a common header that is compiled for AVX in one
-// file may be the one that the linker keeps for all, and then the program ends on machines without AVX.
+// Only the kernels of an instruction set may use it. An inline function of a common header that is compiled for AVX in
+// one file may be the one that the linker keeps for all, and then the program ends on machines without AVX.
 #include <gtest/gtest.h>
 #include <stdio.h>
 
@@ -38,8 +38,8 @@ TEST(instruction_sets, stay_in_their_kernels) {
 #if !defined(__x86_64__) || defined(__AVX__)
     GTEST_SKIP() << "nothing to keep apart on this machine";
 #endif
-    const std::string command =
-        std::string("'") + STERADIAN_OBJDUMP + "' -d -C --no-show-raw-insn '" + STERADIAN_ACCEL_LIBRARY + "' 2>/dev/null";
+    const std::string command = std::string("'") + STERADIAN_OBJDUMP + "' -d -C --no-show-raw-insn '" +
+                                STERADIAN_ACCEL_LIBRARY + "' 2>/dev/null";
     const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), &::pclose);
     ASSERT_TRUE(pipe);
     std::string text;

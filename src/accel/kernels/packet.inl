@@ -8,31 +8,32 @@
 
 inline constexpr uint32_t kPacket = 16;
 
-/// Rays whose directions have the same signs.
+/// Rays whose directions have the same signs. The arrays over rays are loaded as vectors.
 struct alignas(64) Packet {
     float o[3][kPacket], inv_d[3][kPacket];
     float start[kPacket], limit[kPacket];
+    // TriangleRay for every ray, where all have the same axes.
+    double triangle_o[3][kPacket], shear_x[kPacket], shear_y[kPacket], d_z[kPacket];
+    /// The nearest triangle so far, by its id on the upper level; its t is the limit.
+    uint32_t best[kPacket];
+    float u[kPacket], v[kPacket];
+
     /// Of all rays: [axis][lower, upper].
     float o_range[3][2], inv_d_range[3][2];
     float least_start;
     bool negative[3];
     uint32_t octant_shift;
     uint64_t near_plane[3], far_plane[3];
-    const WideNode* nodes;
-
-    // TriangleRay for every ray, where all have the same axes.
-    double triangle_o[3][kPacket], shear_x[kPacket], shear_y[kPacket], d_z[kPacket];
     bool same_axes;
     int axis[3];
-    /// The nearest triangle so far, by its id on the upper level; its t is the limit.
-    uint32_t best[kPacket];
-    float u[kPacket], v[kPacket];
+    const WideNode* nodes;
 
     Ray ray[kPacket];  ///< canonical
     Flight* flights;   ///< one for each ray, set out when a ray needs it
     uint32_t first;    ///< index of the first ray in its batch
     uint32_t set_out;  ///< a bit for each
 };
+static_assert(offsetof(Packet, triangle_o) % 64 == 0 && offsetof(Packet, best) % 64 == 0);
 
 struct PacketEntry {
     alignas(64) float t_in[kPacket];
