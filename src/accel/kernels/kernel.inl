@@ -9,8 +9,10 @@
 
 enum class Mode { closest, any, after };
 
-/// Siblings left behind on the way down, in both levels, and what marks the way back up.
-inline constexpr uint32_t kStackSize = 2 * (kWidth - 1) * kMaxNodeLevels + 2 * kWidth;
+/// What a ray takes with it from a packet (packet.inl), at most, before it has to visit it.
+inline constexpr uint32_t kMaxParted = 64;
+/// That, siblings left behind on the way down, in both levels, and what marks the way back up.
+inline constexpr uint32_t kStackSize = kMaxParted + 2 * (kWidth - 1) * kMaxNodeLevels + 2 * kWidth;
 /// Not references of children: the end of an instance, and the end of everything.
 inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu;
 
@@ -449,10 +451,9 @@ inline void trace(const World& world, const Ray* rays, const Hit* after, size_t 
     });
 }
 
+/// One ray by itself, to its end.
 template <Mode kMode>
-inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
-    Flight f;
-    if (!launch<kMode>(f, world, ray, after, 0)) return {};
+inline void walk(Flight& f, const World& world) {
     while (f.next != kFinished) {
         if (ChildRef::is_leaf(f.next)) {
             visit_other<kMode>(f, world);
@@ -460,6 +461,13 @@ inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
             visit_node_alone<kMode>(f);
         }
     }
+}
+
+template <Mode kMode>
+inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
+    Flight f;
+    if (!launch<kMode>(f, world, ray, after, 0)) return {};
+    walk<kMode>(f, world);
     return f.best.found() ? f.best : Hit{};
 }
 

@@ -19,7 +19,8 @@ struct alignas(64) Packet {
     float u[kPacket], v[kPacket];
 
     /// Of all rays: [axis][lower, upper].
-    float o_range[3][2], inv_d_range[3][2];
+    float o_range[3][2];
+    float inv_d_range[3][2];  ///< [axis][smaller, larger in magnitude]
     float least_start;
     bool negative[3];
     uint32_t octant_shift;
@@ -80,7 +81,9 @@ inline bool gather(Packet& p, const World& world, const Ray* rays) {
         p.octant_shift += p.negative[axis] ? 3u << axis : 0u;
         const Float16 inv_d = Float16::all(1) / Float16::load(p.inv_d[axis]);
         inv_d.store(p.inv_d[axis]);
-        p.inv_d_range[axis][0] = least(inv_d), p.inv_d_range[axis][1] = largest(inv_d);
+        // A product with the larger one may be NaN, and must then be the one that counts as nothing.
+        p.inv_d_range[axis][0] = p.negative[axis] ? largest(inv_d) : least(inv_d);
+        p.inv_d_range[axis][1] = p.negative[axis] ? least(inv_d) : largest(inv_d);
         const Float16 o = Float16::load(p.o[axis]);
         p.o_range[axis][0] = least(o), p.o_range[axis][1] = largest(o);
     }
@@ -98,13 +101,13 @@ inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
     const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
     Float8 in = Float8::all(p.least_start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
-        const Float8 inv_lo = Float8::all(p.inv_d_range[axis][0]), inv_hi = Float8::all(p.inv_d_range[axis][1]);
+        const Float8 inv_small = Float8::all(p.inv_d_range[axis][0]), inv_large = Float8::all(p.inv_d_range[axis][1]);
         // (near - o) * inv_d is least for the origin farthest along the ray; (far - o) * inv_d is largest for the
         // other.
         const Float8 near = plane(p.near_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
         const Float8 far = plane(p.far_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
-        in = larger(smaller(near * inv_lo, near * inv_hi), in);
-        out = smaller(larger(far * inv_lo, far * inv_hi), out);
+        in = larger(smaller(near * inv_small, near * inv_large), in);
+        out = smaller(larger(far * inv_small, far * inv_large), out);
     }
     return at_most(in, out * Float8::all(kFarScale) + Float8::all(kFarPad));
 }
@@ -223,12 +226,45 @@ inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
     return f;
 }
 
+/// What ray i has hit as part of the packet.
+inline Hit hit_of(const Packet& p, const World& world, uint32_t i) {
+    if (p.best[i] == kNoHit) return {};
+    Hit hit{p.limit[i], p.u[i], p.v[i], p.best[i]};
+    hit.instance = world.identify(hit.prim);
+    return hit;
+}
+
+/// What a ray goes on with after its packet.
+template <Mode kMode>
+inline void go_on(Flight& f, const Hit& hit) {
+    if (hit.found() && comes_before(hit, f.best)) f.best = hit, f.limit = hit.t;
+    // What was left behind first is nearest.
+    for (uint32_t a = 1, b = f.depth - 1; a < b; ++a, --b) {
+        std::swap(f.ref[a], f.ref[b]);
+        std::swap(f.t_in[a], f.t_in[b]);
+    }
+    f.next = kMode == Mode::any && f.best.found() ? kFinished : pop<kMode>(f);
+}
+
+/// Visits all that a ray has taken from its packet so far, when that is as much as its stack has room for.
+template <Mode kMode>
+[[gnu::noinline]] void drain(Packet& p, const World& world, Flight& f, uint32_t i) {
+    go_on<kMode>(f, hit_of(p, world, i));
+    walk<kMode>(f, world);
+    f.depth = 0;
+    f.push(kFinished);
+    // From here on the flight keeps what was hit so far; go_on() compares.
+    p.best[i] = kNoHit;
+    p.limit[i] = kMode == Mode::any && f.best.found() ? -kInfinity : f.best.t;
+}
+
 /// Every one of the given rays takes the subtree onto its own stack.
 template <Mode kMode>
 inline void part(Packet& p, const World& world, uint32_t ref, uint32_t rays, const float* t_in) {
     for (; rays; rays &= rays - 1) {
         const auto i = static_cast<uint32_t>(__builtin_ctz(rays));
         Flight& f = flight_of<kMode>(p, world, i);
+        if (f.depth == kMaxParted) drain<kMode>(p, world, f, i);
         f.t_in[f.depth] = t_in[i];
         f.ref[f.depth++] = ref;
     }
@@ -267,26 +303,6 @@ inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
             rays = top.rays & at_most(Float16::load(top.t_in), Float16::load(p.limit));
         } while (rays == 0);
     }
-}
-
-/// What ray i has hit as part of the packet.
-inline Hit hit_of(const Packet& p, const World& world, uint32_t i) {
-    if (p.best[i] == kNoHit) return {};
-    Hit hit{p.limit[i], p.u[i], p.v[i], p.best[i]};
-    hit.instance = world.identify(hit.prim);
-    return hit;
-}
-
-/// What a ray goes on with after its packet.
-template <Mode kMode>
-inline void go_on(Flight& f, const Hit& hit) {
-    if (hit.found()) f.best = hit, f.limit = hit.t;
-    // What was left behind first is nearest.
-    for (uint32_t a = 1, b = f.depth - 1; a < b; ++a, --b) {
-        std::swap(f.ref[a], f.ref[b]);
-        std::swap(f.t_in[a], f.t_in[b]);
-    }
-    f.next = pop<kMode>(f);
 }
 
 /// sink(index, hit) for every ray, in any order.
