@@ -1,6 +1,7 @@
 // The hierarchy against the loop over everything, to the bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "accel/kernels/kernels.h"
@@ -139,6 +140,104 @@ TEST(Oracle, CoherentRays) {
         shot += rays.size();
     }
     EXPECT_GT(hit, shot / 4);
+}
+
+/// Rays that run exactly along an axis in one component, -0 and 0, in one packet with rays that do not; in the planes
+/// of the faces of boxes, where plane - origin is 0 and its product with the infinite reciprocal is not a number.
+TEST(Oracle, PacketsWithZerosInThePlanesOfBoxes) {
+    TestScene scene("grid");
+    TriangleMesh mesh;
+    for (int x = 0; x < 12; ++x)
+        for (int y = 0; y < 12; ++y) {
+            const auto a = static_cast<float>(x), b = static_cast<float>(y),
+                       c = static_cast<float>((x * 7 + y * 5) % 4);
+            mesh.add({a, b, c}, {a + 1, b, c}, {a, b + 1, c});
+        }
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(1);
+    const BruteForce brute(scene);
+    const std::vector<Accel> built = build_all(scene);
+    Random random(9);
+    std::vector<Ray> rays;
+    for (size_t packet = 0; packet < by_tier<size_t>(2'000, 100'000); ++packet) {
+        const float sign_x = random.below(2) ? 1.0f : -1.0f, sign_y = random.below(2) ? 1.0f : -1.0f;
+        const auto x = static_cast<float>(random.below(13)), y = static_cast<float>(random.below(13));
+        for (int i = 0; i < 16; ++i) {
+            Ray ray{{x, y, 9}, 0, {0, 0, -1}, kInfinity};
+            ray.d.x = sign_x * (random.below(2) ? 0.0f : static_cast<float>(random.decades(-6, 0)));
+            ray.d.y = sign_y * (random.below(2) ? 0.0f : static_cast<float>(random.decades(-6, 0)));
+            if (random.below(4) == 0) ray.o.x = static_cast<float>(random.below(13));
+            rays.push_back(ray);
+        }
+    }
+    std::vector<Hit> expected(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+    for (size_t v = 0; v < built.size(); ++v)
+        compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
+}
+
+/// Rows of thousands of shapes and instances, each of them a leaf that all rays of a packet meet: what a ray takes with
+/// it from its packet is more than any stack holds.
+TEST(Oracle, PacketsAlongLongRows) {
+    TestScene scene("rows");
+    TriangleMesh triangle;
+    triangle.add({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+    scene.meshes.push_back(std::move(triangle));
+    for (int kind = 0; kind < 3; ++kind) {
+        std::vector<SphereGeometry> row;
+        // The rays of one packet pass beside these, but within their boxes.
+        for (int i = 0; i < 1500; ++i)
+            row.push_back({{0.9f, 0.9f, static_cast<float>(-4 * i - kind)}, kind == 0 ? 1.0f : 1.05f});
+        scene.spheres.push_back(std::move(row));
+    }
+    for (uint32_t g = 1; g <= 3; ++g) scene.instances.push_back({g, {}});
+    for (int i = 0; i < 1500; ++i) scene.instances.push_back({0, translation(0, 0, -4.0 * i - 3)});
+    scene.finish(2);
+    const BruteForce brute(scene);
+    const std::vector<Accel> built = build_all(scene);
+    Random random(4);
+    std::vector<Ray> rays;
+    for (size_t packet = 0; packet < by_tier<size_t>(4, 40); ++packet)
+        for (int i = 0; i < 16; ++i) {
+            // Off to a corner of the boxes, where most packets hit nothing at all, or something far down the row.
+            const double corner = packet % 2 ? 0.05 : 0.3;
+            Ray ray{
+                {static_cast<float>(corner + 0.01 * random.unit()), static_cast<float>(1.7 + 0.05 * random.unit()), 9},
+                0,
+                {static_cast<float>(1e-6 * random.unit()), static_cast<float>(1e-6 * random.unit()), -1},
+                kInfinity};
+            rays.push_back(ray);
+        }
+    std::vector<Hit> expected(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+    for (size_t v = 0; v < built.size(); ++v)
+        compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
+}
+
+/// Spans of rays in the ordered continuation, on every kernel: all hits in turn, of all rays at once.
+TEST(Oracle, NextHitsOfManyRays) {
+    const std::vector<TestScene> scenes = hard_scenes();
+    for (size_t s = 0; s < scenes.size(); ++s) {
+        const BruteForce brute(scenes[s]);
+        const std::vector<Accel> built = build_all(scenes[s]);
+        const std::vector<Ray> rays = hard_rays(scenes[s], by_tier<size_t>(100, 2'000), 500 + s);
+        std::vector<std::vector<Hit>> expected;
+        size_t most = 0;
+        for (const Ray& ray : rays)
+            expected.push_back(brute.all_hits(ray)), most = std::max(most, expected.back().size());
+        for (size_t v = 0; v < built.size(); ++v) {
+            std::vector<Hit> hits(rays.size()), after;
+            built[v].intersect(rays, hits);
+            for (size_t k = 0; k <= std::min<size_t>(most, 20); ++k) {
+                for (size_t i = 0; i < rays.size(); ++i)
+                    ASSERT_TRUE(same_bits(hits[i], k < expected[i].size() ? expected[i][k] : Hit{}))
+                        << scenes[s].name << ", " << name_of(variants()[v]) << ", hit " << k << ", "
+                        << describe(rays[i]);
+                after = hits;
+                built[v].next_hit(rays, after, hits);
+            }
+        }
+    }
 }
 
 /// Spans of every length around the sizes that the kernels work in.
