@@ -16,8 +16,10 @@ namespace steradian {
 /// rays are rounded on their way into its space. Traversal knows boxes only, so the definition of a hit takes them in:
 /// t is clamped into the interval of the primitive's own box (in the space of the geometry), then into that of the
 /// instance's world box (along the world ray), and a candidate whose box the ray misses is none. Since an inner box's
-/// interval lies within an outer one's (box.h), every node on the way to the primitive has t_in <= t <= t_out, and no
-/// traversal that skips nodes for t_in > best t or t_out < tmin can lose it.
+/// interval lies within an outer one's (box.h), every node of the upper level on the way to the primitive has t_in <= t
+/// <= t_out, and no traversal that skips nodes for t_in > best t or t_out < tmin can lose it. Within an instance the
+/// same holds for t before the second clamp, which is monotone: there nodes may be skipped for t_in > best t only while
+/// best t < world.out, and for t_out < tmin only while tmin > world.in (set_range in the kernels).
 inline bool settle(float t, Interval own, Interval world, float& out) {
     if (own.empty() || world.empty()) return false;
     // + 0 turns -0 into 0: two ways to write one time.

@@ -110,6 +110,31 @@ TEST(Api, HostileRaysGetTheDefinedAnswer) {
     }
 }
 
+/// The same in spans, on every kernel.
+TEST(Api, HostileRaysAmongManyGetTheDefinedAnswer) {
+    const std::vector<Ray> rays = hostile_rays();
+    for (const TestScene& scene : hard_scenes()) {
+        const BruteForce brute(scene);
+        std::vector<Hit> expected, hits(rays.size());
+        std::vector<uint8_t> occluded(rays.size());
+        for (const Ray& ray : rays) expected.push_back(brute.first_hit(ray));
+        for (const Isa isa : supported_isas()) {
+            AccelOptions options;
+            options.isa = isa;
+            const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+            ASSERT_TRUE(accel);
+            for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
+                accel->intersect(rays, hits, kind);
+                accel->occluded(rays, occluded, kind);
+                for (size_t i = 0; i < rays.size(); ++i) {
+                    ASSERT_TRUE(same_bits(hits[i], expected[i])) << scene.name << " " << describe(rays[i]);
+                    ASSERT_EQ(occluded[i] != 0, expected[i].found());
+                }
+            }
+        }
+    }
+}
+
 // Embree's bound is 2.5 times a normal ray; these return before they look at anything.
 TEST(Api, NextHitAfterAMissIsAMiss) {
     TestScene scene("sphere");

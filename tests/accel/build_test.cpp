@@ -4,6 +4,7 @@
 #include <atomic>
 #include <thread>
 
+#include "accel/wide_node.h"
 #include "base/parallel.h"
 #include "scenes.h"
 #include "support/support.h"
@@ -154,8 +155,8 @@ TEST(Build, CountsItsBytes) {
     ASSERT_TRUE(accel);
     const AccelStatistics& s = accel->statistics();
     // At least the nine coordinates and the id of every triangle, and the nodes.
-    EXPECT_GE(s.bytes, 50'000u * 40 + s.nodes * 128);
-    EXPECT_LE(s.bytes, 50'000u * 160 + s.nodes * 128 + 10'000);
+    EXPECT_GE(s.bytes, 50'000u * 40 + s.nodes * sizeof(WideNode));
+    EXPECT_LE(s.bytes, 50'000u * 160 + s.nodes * sizeof(WideNode) + 10'000);
     EXPECT_GT(s.build_seconds, 0);
 }
 

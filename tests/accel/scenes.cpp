@@ -211,6 +211,43 @@ TestScene coincident() {
     return s;
 }
 
+/// What a renderer usually has: several meshes and shapes in place, each used once and so all of them in one hierarchy,
+/// with an empty one between, in an order that is not that of the geometries; beside transformed instances of the same
+/// shapes. Much of it coincides, within a mesh, between meshes and between kinds, so that ids decide.
+TestScene mixed() {
+    TestScene s("mixed: every kind in place, beside instances");
+    TriangleMesh twins, square, grid;
+    for (int i = 0; i < 20; ++i) twins.add({0, 0, 0}, {1, 0, 0.5f}, {0.1f, 1, 0});
+    square.add({-1, -1, 0.25f}, {1, -1, 0.25f}, {1, 1, 0.25f});
+    square.add({-1, -1, 0.25f}, {1, 1, 0.25f}, {-1, 1, 0.25f});
+    for (int x = -4; x < 4; ++x)
+        for (int y = -4; y < 4; ++y) {
+            const float a = 0.25f * static_cast<float>(x), b = 0.25f * static_cast<float>(y);
+            grid.add({a, b, -0.5f}, {a + 0.25f, b, -0.5f}, {a, b + 0.25f, -0.5f});
+        }
+    s.meshes = {twins, square, {}, twins, grid, grid};
+    std::vector<SphereGeometry> spheres;
+    for (int i = 0; i < 30; ++i) spheres.push_back({{0.1f * static_cast<float>(i % 10), 0, 0}, 0.3f});
+    s.spheres = {spheres};
+    s.rectangles = {{{{0, 0, 0.25f}, {1, 0, 0}, {0, 1, 0}}}, {{{0, 0, -0.5f}, {1, 0, 0}, {0, 1, 0}}}};
+    s.disks = {{{{0, 0, 0.25f}, {1, 0, 0}, {0, 1, 0}}}};
+    // Geometries: 0 to 5 meshes, 6 spheres, 7 and 8 rectangles, 9 disk.
+    s.instances = {{3, {}},
+                   {9, {}},
+                   {2, {}},
+                   {4, translation(0, 0, 0.25)},
+                   {1, {}},
+                   {6, {}},
+                   {8, {}},
+                   {0, {}},
+                   {4, rotation_degrees(30, {1, 0, 0})},
+                   {5, {}},
+                   {7, translation(0.5, 0, 0)},
+                   {6, scaling(1, -1, 1)}};
+    // The spheres are used twice: neither of them is in place.
+    return s;
+}
+
 TestScene axis_aligned_grid() {
     TestScene s("grid: flat, axis-aligned, shared edges");
     TriangleMesh m;
@@ -308,6 +345,7 @@ std::vector<TestScene> hard_scenes() {
     scenes.push_back(slivers());
     scenes.push_back(degenerate());
     scenes.push_back(coincident());
+    scenes.push_back(mixed());
     scenes.push_back(axis_aligned_grid());
     scenes.push_back(closed_mesh());
     for (int which = 0; which < 3; ++which) scenes.push_back(shapes(which));

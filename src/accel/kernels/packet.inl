@@ -71,6 +71,7 @@ inline bool gather(Packet& p, const World& world, const Ray* rays) {
         }
         p.start[i] = ray.tmin, p.limit[i] = ray.tmax;
         p.best[i] = kNoHit;
+        p.u[i] = p.v[i] = 0;
     }
     p.octant_shift = 0;
     for (int axis = 0; axis < 3; ++axis) {
