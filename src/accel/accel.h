@@ -56,7 +56,7 @@ struct AccelOptions {
 
 struct AccelStatistics {
     uint64_t primitives = 0, nodes = 0, leaves = 0;
-    uint32_t depth = 0;  ///< splits above the deepest leaf of any geometry
+    uint32_t depth = 0;  ///< splits above the deepest leaf of either level
     uint64_t bytes = 0;  ///< everything the Accel holds; the caller's arrays are not counted
     double build_seconds = 0;
 };
@@ -73,15 +73,16 @@ public:
     /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
     /// geometries that do not exist; a transform that is singular, scales beyond 1e±30 or leads beyond kMaxCoordinate.
     /// `usage` for a max_depth out of range or an instruction set that the machine lacks, `resources` when memory runs
-    /// out or there are 2^27 primitives or more, `render_failed` when cancelled. Uses the workers of the caller's
-    /// arena (base/parallel.h).
+    /// out or there are 2^27 primitives and instances or more, `render_failed` when cancelled. Uses the workers of the
+    /// caller's arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
     Accel(Accel&&) noexcept;
     Accel& operator=(Accel&&) noexcept;
     ~Accel();
 
-    /// hits.size() == rays.size(). A ray that hits nothing gets Hit{}.
+    /// hits.size() == rays.size() < 2^32. A ray that hits nothing gets Hit{}. Takes about 400 kB of the caller's stack,
+    /// as the other calls do.
     void intersect(std::span<const Ray> rays, std::span<Hit> hits, RayKind kind = RayKind::incoherent) const noexcept;
     /// 1 where any primitive lies within [tmin, tmax], else 0.
     void occluded(std::span<const Ray> rays, std::span<uint8_t> result,

@@ -71,12 +71,8 @@ inline std::optional<PlacedGeometry> place(uint32_t geometry, const Affine& worl
     placed.identity = is_identity(world_from_object);
     placed.world = bounds;
     if (placed.identity) return placed;
-    const std::optional<Affine> inverted = inverse(world_from_object);
+    const std::optional<Affine> inverted = usable_inverse(world_from_object);
     if (!inverted) return std::nullopt;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column)
-            if (std::fabs(world_from_object.m[row][column]) > 1e30 || std::fabs(inverted->m[row][column]) > 1e30)
-                return std::nullopt;
     placed.object_from_world = *inverted;
     if (!bounds.empty()) placed.world = transformed_bounds(world_from_object, bounds);
     return placed;

@@ -30,22 +30,14 @@ inline float half_area(Float4 e) {
     const __m128 xy_yz = _mm_add_ss(p, _mm_shuffle_ps(p, p, 1));
     return _mm_cvtss_f32(_mm_add_ss(xy_yz, _mm_movehl_ps(p, p)));
 }
-struct Mask4 {
-    __m128 v;
-};
 inline Float4 operator+(Float4 a, Float4 b) { return {_mm_add_ps(a.v, b.v)}; }
 inline Float4 operator-(Float4 a, Float4 b) { return {_mm_sub_ps(a.v, b.v)}; }
 inline Float4 operator*(Float4 a, Float4 b) { return {_mm_mul_ps(a.v, b.v)}; }
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float4 larger(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
 inline Float4 smaller(Float4 a, Float4 b) { return {_mm_min_ps(a.v, b.v)}; }
-inline Float4 abs(Float4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
-inline Mask4 operator<=(Float4 a, Float4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
-inline Mask4 operator<(Float4 a, Float4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
-inline Mask4 operator&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
-inline Mask4 operator|(Mask4 a, Mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
-/// Bit i for lane i.
-inline uint32_t bits(Mask4 m) { return static_cast<uint32_t>(_mm_movemask_ps(m.v)); }
+/// Bit i where a <= b in lane i.
+inline uint32_t at_most(Float4 a, Float4 b) { return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.v, b.v))); }
 
 #elif defined(__aarch64__)
 
@@ -61,22 +53,14 @@ inline float half_area(Float4 e) {
     const float x = vgetq_lane_f32(e.v, 0), y = vgetq_lane_f32(e.v, 1), z = vgetq_lane_f32(e.v, 2);
     return x * y + y * z + z * x;
 }
-struct Mask4 {
-    uint32x4_t v;
-};
 inline Float4 operator+(Float4 a, Float4 b) { return {vaddq_f32(a.v, b.v)}; }
 inline Float4 operator-(Float4 a, Float4 b) { return {vsubq_f32(a.v, b.v)}; }
 inline Float4 operator*(Float4 a, Float4 b) { return {vmulq_f32(a.v, b.v)}; }
 inline Float4 larger(Float4 a, Float4 b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
 inline Float4 smaller(Float4 a, Float4 b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
-inline Float4 abs(Float4 a) { return {vabsq_f32(a.v)}; }
-inline Mask4 operator<=(Float4 a, Float4 b) { return {vcleq_f32(a.v, b.v)}; }
-inline Mask4 operator<(Float4 a, Float4 b) { return {vcltq_f32(a.v, b.v)}; }
-inline Mask4 operator&(Mask4 a, Mask4 b) { return {vandq_u32(a.v, b.v)}; }
-inline Mask4 operator|(Mask4 a, Mask4 b) { return {vorrq_u32(a.v, b.v)}; }
-inline uint32_t bits(Mask4 m) {
+inline uint32_t at_most(Float4 a, Float4 b) {
     static const uint32_t kLanes[4] = {1, 2, 4, 8};
-    return vaddvq_u32(vandq_u32(m.v, vld1q_u32(kLanes)));
+    return vaddvq_u32(vandq_u32(vcleq_f32(a.v, b.v), vld1q_u32(kLanes)));
 }
 
 #else
@@ -94,18 +78,9 @@ struct Float4 {
     Float4 first_three() const { return {{v[0], v[1], v[2], 0}}; }
 };
 inline float half_area(Float4 e) { return e.v[0] * e.v[1] + e.v[1] * e.v[2] + e.v[2] * e.v[0]; }
-struct Mask4 {
-    uint32_t v;
-};
 template <class F>
 inline Float4 per_lane(Float4 a, Float4 b, F f) {
     return {{f(a.v[0], b.v[0]), f(a.v[1], b.v[1]), f(a.v[2], b.v[2]), f(a.v[3], b.v[3])}};
-}
-template <class F>
-inline Mask4 mask_lanes(Float4 a, Float4 b, F f) {
-    uint32_t mask = 0;
-    for (int i = 0; i < 4; ++i) mask |= uint32_t(f(a.v[i], b.v[i])) << i;
-    return {mask};
 }
 inline Float4 operator+(Float4 a, Float4 b) {
     return per_lane(a, b, [](float x, float y) { return x + y; });
@@ -122,18 +97,11 @@ inline Float4 larger(Float4 a, Float4 b) {
 inline Float4 smaller(Float4 a, Float4 b) {
     return per_lane(a, b, [](float x, float y) { return x < y ? x : y; });
 }
-inline Float4 abs(Float4 a) {
-    return per_lane(a, a, [](float x, float) { return __builtin_fabsf(x); });
+inline uint32_t at_most(Float4 a, Float4 b) {
+    uint32_t mask = 0;
+    for (int i = 0; i < 4; ++i) mask |= uint32_t(a.v[i] <= b.v[i]) << i;
+    return mask;
 }
-inline Mask4 operator<=(Float4 a, Float4 b) {
-    return mask_lanes(a, b, [](float x, float y) { return x <= y; });
-}
-inline Mask4 operator<(Float4 a, Float4 b) {
-    return mask_lanes(a, b, [](float x, float y) { return x < y; });
-}
-inline Mask4 operator&(Mask4 a, Mask4 b) { return {a.v & b.v}; }
-inline Mask4 operator|(Mask4 a, Mask4 b) { return {a.v | b.v}; }
-inline uint32_t bits(Mask4 m) { return m.v; }
 
 #endif
 

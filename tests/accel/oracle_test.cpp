@@ -214,6 +214,43 @@ TEST(Oracle, PacketsAlongLongRows) {
         compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
 }
 
+/// A rectangle and, coincident with it, a triangle that is found last, because its box reaches far; in between, what a
+/// ray takes from its packet is visited, and so the rectangle is hit first. At the same t the smaller instance wins.
+TEST(Oracle, PacketsKeepWhatWasHitOnTheWay) {
+    TestScene scene("rectangle before a triangle");
+    TriangleMesh triangle;
+    triangle.add({-1, -1, -20}, {4000, -1, -20}, {-1, 4000, -20});
+    scene.meshes.push_back(std::move(triangle));
+    std::vector<SphereGeometry> row;
+    // The rays pass beside these, but within their boxes.
+    for (int i = 0; i < 400; ++i) row.push_back({{0.9f, 0.9f, -22.5f - 2.2f * static_cast<float>(i)}, 1.05f});
+    scene.spheres.push_back(std::move(row));
+    scene.rectangles.push_back({{{0, 0, -20}, {2, 0, 0}, {0, 2, 0}}});
+    // Geometries: 0 mesh, 1 spheres, 2 rectangle. Once the rectangle comes first in the order of instances, once last.
+    for (const bool rectangle_first : {true, false}) {
+        scene.instances = rectangle_first ? std::vector<GeometryInstance>{{2, {}}, {1, {}}, {0, {}}}
+                                          : std::vector<GeometryInstance>{{0, {}}, {1, {}}, {2, {}}};
+        const BruteForce brute(scene);
+        const std::vector<Accel> built = build_all(scene);
+        std::vector<Ray> rays;
+        Random random(3);
+        for (int i = 0; i < 16; ++i)
+            rays.push_back(
+                {{static_cast<float>(0.05 + 0.01 * random.unit()), static_cast<float>(1.7 + 0.05 * random.unit()), 0},
+                 0,
+                 {static_cast<float>(1e-7 * random.unit()), static_cast<float>(1e-7 * random.unit()), -1},
+                 kInfinity});
+        std::vector<Hit> expected(rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) {
+            expected[i] = brute.first_hit(rays[i]);
+            ASSERT_EQ(expected[i].t, 20);
+            ASSERT_EQ(expected[i].instance, 0u);
+        }
+        for (size_t v = 0; v < built.size(); ++v)
+            compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
+    }
+}
+
 /// Spans of rays in the ordered continuation, on every kernel: all hits in turn, of all rays at once.
 TEST(Oracle, NextHitsOfManyRays) {
     const std::vector<TestScene> scenes = hard_scenes();

@@ -330,6 +330,29 @@ TestScene instanced(const std::string& name, double scale, std::array<double, 3>
     return s;
 }
 
+/// Plates near the origin of the world whose vertices are far from that of their own space, where the ray's origin is
+/// rounded by more than the distance to them: what their tests find is clamped by the boxes of the instances, again and
+/// again.
+TestScene far_from_their_own_origin() {
+    TestScene s("instances far from their own origin");
+    const double away[3] = {3e5, -2e5, 1e5};
+    TriangleMesh plates;
+    Random random(61);
+    for (int i = 0; i < 24; ++i) {
+        const auto x = static_cast<float>(away[0] + random.uniform(-1, 1)),
+                   y = static_cast<float>(away[1] + random.uniform(-1, 1)),
+                   z = static_cast<float>(away[2] + 0.25 * (i % 8));
+        plates.add({x, y, z}, {x + 1, y, z}, {x, y + 1, z});
+    }
+    s.meshes.push_back(std::move(plates));
+    s.rectangles.push_back({{{float(away[0]), float(away[1]), float(away[2]) - 1}, {2, 0, 0}, {0, 2, 0}}});
+    const Affine back = translation(-away[0], -away[1], -away[2]);
+    for (const double angle : {0.0, 90.0, 17.0})
+        for (uint32_t geometry = 0; geometry < 2; ++geometry)
+            s.instances.push_back({geometry, rotation_degrees(angle, {0, 1, 0}) * back});
+    return s;
+}
+
 }  // namespace
 
 std::vector<TestScene> hard_scenes() {
@@ -352,6 +375,7 @@ std::vector<TestScene> hard_scenes() {
     scenes.push_back(instanced("instances", 1, {0, 0, 0}));
     scenes.push_back(instanced("instances far away", 3, {1e5, -3e5, 2e5}));
     scenes.push_back(instanced("instances, small", 1e-12, {1e-10, 0, 0}));
+    scenes.push_back(far_from_their_own_origin());
     TestScene empty("nothing");
     empty.meshes.emplace_back();
     scenes.push_back(std::move(empty));

@@ -19,9 +19,6 @@ inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }
 
-/// Bit i where a <= b in lane i.
-inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
-
 struct Double4 {
     __m256d v;
     static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }

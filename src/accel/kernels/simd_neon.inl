@@ -24,9 +24,6 @@ inline uint32_t at_most(Float8 a, Float8 b) {
     return vaddvq_u32(vorrq_u32(lo, hi));
 }
 
-/// Bit i where a <= b in lane i.
-inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
-
 struct Double4 {
     float64x2_t lo, hi;
     static Double4 of_floats(const float* p) {

@@ -1,4 +1,4 @@
-// Vectors for the kernels with SSE4.1: pairs of registers. Included inside the namespace of an instruction set. IEEE
+// Vectors for the kernels with SSE4.2: pairs of registers. Included inside the namespace of an instruction set. IEEE
 // operations only, so that every lane computes what the scalar expression computes.
 
 struct Float8 {
@@ -19,9 +19,6 @@ inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) | _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi))
                                                                                  << 4);
 }
-
-/// Bit i where a <= b in lane i.
-inline uint32_t at_most(Float4 a, Float4 b) { return bits(a <= b); }
 
 struct Double4 {
     __m128d lo, hi;
