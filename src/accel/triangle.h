@@ -86,6 +86,14 @@ struct Sheared {
 
 }  // namespace detail
 
+/// Both weights may have been rounded up; one float less of the larger one is enough for a sum of at most 1.
+inline void limit_weights(float& a, float& b) {
+    if (double(a) + double(b) > 1) [[unlikely]] {
+        float& larger = a > b ? a : b;
+        larger = std::nextafter(larger, 0.0f);
+    }
+}
+
 /// The edge functions of a triangle, which are the weights of its vertices, and how far its vertices are along z.
 struct EdgeFunctions {
     double u, v, w;
@@ -98,11 +106,7 @@ struct EdgeFunctions {
         const double sum = u + v + w;
         of_p1 = static_cast<float>(v / sum);
         of_p2 = static_cast<float>(w / sum);
-        // Both may have been rounded up; one float less of the larger one is enough.
-        if (double(of_p1) + double(of_p2) > 1) {
-            float& larger = of_p1 > of_p2 ? of_p1 : of_p2;
-            larger = std::nextafter(larger, 0.0f);
-        }
+        limit_weights(of_p1, of_p2);
     }
     /// The candidate of a triangle that is not missed.
     TriangleCandidate candidate(double d_z) const {

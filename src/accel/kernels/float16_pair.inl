@@ -14,6 +14,7 @@ inline Float16 larger(Float16 a, Float16 b) { return {larger(a.lo, b.lo), larger
 inline Float16 smaller(Float16 a, Float16 b) { return {smaller(a.lo, b.lo), smaller(a.hi, b.hi)}; }
 inline uint32_t at_most(Float16 a, Float16 b) { return at_most(a.lo, b.lo) | at_most(a.hi, b.hi) << 8; }
 inline Float16 operator/(Float16 a, Float16 b) { return {a.lo / b.lo, a.hi / b.hi}; }
+inline Float16 magnitude(Float16 a) { return {magnitude(a.lo), magnitude(a.hi)}; }
 /// Of all lanes, none of which is NaN.
 inline float least(Float16 a) {
     alignas(32) float v[8];

@@ -8,6 +8,8 @@
                              apply_to = function)
 #else
 #pragma GCC push_options
+// GCC 12 takes its own headers' undefined registers for a mistake (bug 105593).
+#pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,popcnt")
 #endif
 

@@ -7,96 +7,125 @@
 // that is not a triangle of the upper level. All of it computes the same operations as there.
 
 inline constexpr uint32_t kPacket = 16;
+/// What may be left to be decided exactly before it is.
+inline constexpr uint32_t kMaxOpen = 64;
 
-/// Rays whose directions have the same signs. The arrays over rays are loaded as vectors.
+/// Rays whose directions have the same signs and the same largest axis. The arrays over rays are loaded as vectors.
 struct alignas(64) Packet {
-    float o[3][kPacket], inv_d[3][kPacket];
-    float start[kPacket], limit[kPacket];
-    // TriangleRay for every ray, where all have the same axes.
-    double triangle_o[3][kPacket], shear_x[kPacket], shear_y[kPacket], d_z[kPacket];
-    /// The nearest triangle so far, by its id on the upper level; its t is the limit.
+    // As in Ray, one after the other.
+    float o[3][kPacket], start[kPacket], d[3][kPacket], limit[kPacket];
+    float inv_d[3][kPacket];
+    float shear_x[kPacket], shear_y[kPacket];  ///< rounded; what is exact computes them in double
+    /// The nearest triangle so far, by its id on the upper level. Its t lies in [low, limit].
+    float low[kPacket];
     uint32_t best[kPacket];
     float u[kPacket], v[kPacket];
+    uint32_t place[kPacket];  ///< of a triangle that is pending: block * kBlock + lane
+    // Pairs of rays and triangles about which float cannot decide.
+    uint32_t open_count, open_ray[kMaxOpen], open_place[kMaxOpen];
+    uint32_t pending;  ///< a bit for every ray whose nearest triangle has no exact t, u and v, nor an id, yet
 
     /// Of all rays: [axis][lower, upper].
     float o_range[3][2];
     float inv_d_range[3][2];  ///< [axis][smaller, larger in magnitude]
     float least_start;
     bool negative[3];
+    bool one_origin;
     uint32_t octant_shift;
     uint64_t near_plane[3], far_plane[3];
-    bool same_axes;
-    int axis[3];
+    int axis[3];  ///< as in TriangleRay
     const WideNode* nodes;
 
-    Ray ray[kPacket];  ///< canonical
-    Flight* flights;   ///< one for each ray, set out when a ray needs it
-    uint32_t first;    ///< index of the first ray in its batch
-    uint32_t set_out;  ///< a bit for each
+    const Ray* ray[kPacket];  ///< canonical
+    uint32_t index[kPacket];  ///< in its batch
+    Flight* flights;          ///< one for each ray, set out when a ray needs it
+    uint32_t started;         ///< a bit for each
 };
-static_assert(offsetof(Packet, triangle_o) % 64 == 0 && offsetof(Packet, best) % 64 == 0);
+static_assert(offsetof(Packet, limit) == 7 * sizeof(float[kPacket]));
+static_assert(offsetof(Packet, low) % 64 == 0 && offsetof(Packet, place) % 64 == 0);
 
 struct PacketEntry {
     alignas(64) float t_in[kPacket];
     uint32_t ref, rays;
+    const float* planes;  ///< of this child, in its parent
 };
 
-/// The constructor of TriangleRay for all rays at once.
-inline void prepare_triangles(Packet& p) {
-    const int z = dominant_axis(p.ray[0].d);
-    p.axis[0] = (z + 1) % 3, p.axis[1] = (z + 2) % 3, p.axis[2] = z;
-    p.same_axes = true;
-    for (uint32_t i = 0; i < kPacket; ++i) {
-        const Ray& ray = p.ray[i];
-        p.same_axes = p.same_axes && dominant_axis(ray.d) == z;
-        for (int k = 0; k < 3; ++k) p.triangle_o[k][i] = ray.o[p.axis[k]];
-        p.shear_x[i] = ray.d[p.axis[0]], p.shear_y[i] = ray.d[p.axis[1]], p.d_z[i] = ray.d[z];
+/// Packets are proved for origins and lengths of directions within these; other rays go by themselves.
+inline constexpr float kMaxPacketOrigin = 1e16f, kMinPacketDirection = 1e-20f, kMaxPacketDirection = 1e20f;
+
+/// True when every ray is its own canonical form, and within the bounds above.
+inline bool all_usual(const Packet& p) {
+    const Float16 zero = Float16::all(0);
+    uint32_t usual = (1u << kPacket) - 1;
+    Float16 longest = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Float16 size = magnitude(Float16::load(p.d[axis]));
+        usual &= at_most(magnitude(Float16::load(p.o[axis])), Float16::all(kMaxPacketOrigin));
+        usual &= at_most(size, Float16::all(kMaxPacketDirection));
+        usual &= at_most(size, zero) | at_most(Float16::all(kMinDirection), size);
+        longest = larger(size, longest);
     }
-    for (uint32_t i = 0; i < kPacket; i += kGroup) {
-        const Doubles d_z = Doubles::load(p.d_z + i);
-        (Doubles::load(p.shear_x + i) / d_z).store(p.shear_x + i);
-        (Doubles::load(p.shear_y + i) / d_z).store(p.shear_y + i);
-    }
+    const Float16 start = Float16::load(p.start);
+    usual &= at_most(Float16::all(kMinPacketDirection), longest);
+    usual &= at_most(zero, start) & at_most(start, Float16::all(std::numeric_limits<float>::max()));
+    usual &= at_most(start, Float16::load(p.limit));
+    return usual == (1u << kPacket) - 1;
 }
 
-/// False when a ray hits nothing by definition, or the directions have different signs.
-inline bool gather(Packet& p, const World& world, const Ray* rays) {
-    uint32_t signs[3] = {};
-    for (uint32_t i = 0; i < kPacket; ++i) {
-        Ray& ray = p.ray[i];
-        if (!canonical(rays[i], ray)) return false;
-        for (int axis = 0; axis < 3; ++axis) {
-            p.o[axis][i] = ray.o[axis], p.inv_d[axis][i] = ray.d[axis];
-            signs[axis] += std::signbit(ray.d[axis]);
-        }
-        p.start[i] = ray.tmin, p.limit[i] = ray.tmax;
-        p.best[i] = kNoHit;
-        p.u[i] = p.v[i] = 0;
+/// What TriangleRay does for one ray. False when the largest axis is not the same for all.
+inline bool set_shear(Packet& p) {
+    const int z = dominant_axis(p.ray[0]->d);
+    p.axis[0] = (z + 1) % 3, p.axis[1] = (z + 2) % 3, p.axis[2] = z;
+    const Float16 of_z = magnitude(Float16::load(p.d[z]));
+    uint32_t other = 0;
+    for (int axis = 0; axis < 3; ++axis) {  // of equal components the one that comes first counts
+        if (axis == z) continue;
+        const Float16 size = magnitude(Float16::load(p.d[axis]));
+        other |= axis < z ? at_most(of_z, size) : ~at_most(size, of_z) & ((1u << kPacket) - 1);
     }
+    if (other) return false;
+    const Float16 d_z = Float16::load(p.d[z]);
+    (Float16::load(p.d[p.axis[0]]) / d_z).store(p.shear_x);
+    (Float16::load(p.d[p.axis[1]]) / d_z).store(p.shear_y);
+    return true;
+}
+
+/// Of p.ray. False when these rays cannot go as a packet.
+inline bool form(Packet& p, const World& world) {
+    static_assert(sizeof(Ray) == 8 * sizeof(float));
+    const float* rows[kPacket];
+    for (uint32_t i = 0; i < kPacket; ++i) rows[i] = &p.ray[i]->o.x;
+    transpose(rows, p.o[0]);
+    if (!all_usual(p) || !set_shear(p)) return false;
+    Float16::load(p.limit).store(p.low);
+    for (uint32_t& id : p.best) id = kNoHit;
     p.octant_shift = 0;
+    p.one_origin = true;
     for (int axis = 0; axis < 3; ++axis) {
-        if (signs[axis] != 0 && signs[axis] != kPacket) return false;
-        p.negative[axis] = signs[axis] != 0;
+        const Float16 inv_d = Float16::all(1) / Float16::load(p.d[axis]);
+        inv_d.store(p.inv_d[axis]);
+        const uint32_t negative = at_most(inv_d, Float16::all(0));
+        if (negative != 0 && negative != (1u << kPacket) - 1) return false;
+        p.negative[axis] = negative != 0;
         p.near_plane[axis] = static_cast<uint32_t>(2 * axis + p.negative[axis]) * sizeof(float[kWidth]);
         p.far_plane[axis] = p.near_plane[axis] ^ sizeof(float[kWidth]);
         p.octant_shift += p.negative[axis] ? 3u << axis : 0u;
-        const Float16 inv_d = Float16::all(1) / Float16::load(p.inv_d[axis]);
-        inv_d.store(p.inv_d[axis]);
         // A product with the larger one may be NaN, and must then be the one that counts as nothing.
         p.inv_d_range[axis][0] = p.negative[axis] ? largest(inv_d) : least(inv_d);
         p.inv_d_range[axis][1] = p.negative[axis] ? least(inv_d) : largest(inv_d);
         const Float16 o = Float16::load(p.o[axis]);
         p.o_range[axis][0] = least(o), p.o_range[axis][1] = largest(o);
+        p.one_origin = p.one_origin && p.o_range[axis][0] == p.o_range[axis][1];
     }
     p.least_start = least(Float16::load(p.start));
     p.nodes = world.upper.nodes;
-    p.set_out = 0;
-    prepare_triangles(p);
+    p.started = p.pending = p.open_count = 0;
     return true;
 }
 
-/// A bit for every child that some ray of the packet may meet. For every ray t = (plane - o) * inv_d lies between the
-/// least and the largest of the four products of ends of intervals, and so it does when all of them are rounded.
+/// A bit for every child that some ray of the packet may meet, at its place in the order from far to near. For every
+/// ray t = (plane - o) * inv_d lies between the least and the largest of the four products of ends of intervals, and so
+/// it does when all of them are rounded.
 inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
     const char* planes = reinterpret_cast<const char*>(&node);
     const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
@@ -110,7 +139,7 @@ inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
         in = larger(smaller(near * inv_small, near * inv_large), in);
         out = smaller(larger(far * inv_small, far * inv_large), out);
     }
-    return at_most(in, out * Float8::all(kFarScale) + Float8::all(kFarPad));
+    return ordered_at_most(in, out * Float8::all(kFarScale) + Float8::all(kFarPad), node, p.octant_shift);
 }
 
 /// The rays, of those given, that meet the child; their t_in.
@@ -129,110 +158,29 @@ inline uint32_t test_child(const Packet& p, const WideNode& node, uint32_t child
     return rays & at_most(in, out) & at_most(in, Float16::load(p.limit));
 }
 
-/// A triangle that ray i meets at a settled t within its range.
-template <Mode kMode>
-inline void take(Packet& p, uint32_t i, float t, uint32_t id, const EdgeFunctions& edges) {
-    // Ids of the upper level ascend with (instance, primitive).
-    if (t == p.limit[i] && p.best[i] < id) return;
-    p.best[i] = id;
-    // Nothing is left to do for a ray that is done: no box begins before -infinity.
-    p.limit[i] = kMode == Mode::any ? -kInfinity : t;
-    if (kMode != Mode::any) edges.weights(p.u[i], p.v[i]);
-}
-
-/// One ray and one triangle, the long way.
-template <Mode kMode>
-[[gnu::noinline]] void test_pair(Packet& p, uint32_t i, Vec3 p0, Vec3 p1, Vec3 p2, uint32_t id) {
-    const TriangleRay ray(p.ray[i]);
-    const EdgeFunctions edges = edge_functions(ray, p0, p1, p2);
-    float t = 0;
-    if (!edges.inside() ||
-        !settle(edges.candidate(ray.d_z).t, slab_interval(triangle_bounds(p0, p1, p2), SlabRay(p.ray[i])), {}, t))
-        return;
-    if (p.start[i] <= t && t <= p.limit[i]) take<kMode>(p, i, t, id, edges);
-}
-
-/// One triangle against kGroup rays from `first` on, of which those with a bit in `rays` count: test_block with the
-/// parts of rays and triangles exchanged.
-template <Mode kMode>
-inline void test_group(Packet& p, const Vec3 corner[3], const Box& own, uint32_t id, uint32_t first, uint32_t rays) {
-    const Doubles o[3] = {Doubles::load(p.triangle_o[0] + first), Doubles::load(p.triangle_o[1] + first),
-                          Doubles::load(p.triangle_o[2] + first)};
-    const Doubles shear_x = Doubles::load(p.shear_x + first), shear_y = Doubles::load(p.shear_y + first);
-    Doubles x[3], y[3], z[3];
-    for (int i = 0; i < 3; ++i) {
-        z[i] = Doubles::all(corner[i][p.axis[2]]) - o[2];
-        x[i] = (Doubles::all(corner[i][p.axis[0]]) - o[0]) - shear_x * z[i];
-        y[i] = (Doubles::all(corner[i][p.axis[1]]) - o[1]) - shear_y * z[i];
-    }
-    const Doubles u = x[2] * y[1] - y[2] * x[1];
-    const Doubles v = x[0] * y[2] - y[0] * x[2];
-    const Doubles w = x[1] * y[0] - y[1] * x[0];
-    const Doubles low = smaller(smaller(u, v), w), high = larger(larger(u, v), w);
-    const uint32_t not_below = not_negative(low), not_above = not_positive(high);
-    rays &= not_below | not_above;
-    if (rays == 0) return;
-    // The sign of a difference that came out as 0 is still open.
-    const uint32_t open = rays & ((not_below & not_positive(low)) | (not_above & not_negative(high)));
-    for (uint32_t rest = open; rest; rest &= rest - 1) {
-        const uint32_t i = first + static_cast<uint32_t>(__builtin_ctz(rest));
-        test_pair<kMode>(p, i, corner[0], corner[1], corner[2], id);
-    }
-    rays &= ~open;
-    const Doubles sum = u + v + w;
-    const Floats t = to_floats((u * z[0] + v * z[1] + w * z[2]) / (sum * Doubles::load(p.d_z + first)));
-    Floats in = Floats::all(-kInfinity), out = Floats::all(kInfinity);
-    for (int axis = 0; axis < 3; ++axis) {
-        const Floats origin = Floats::load(p.o[axis] + first), inv_d = Floats::load(p.inv_d[axis] + first);
-        in = larger((Floats::all(p.negative[axis] ? own.hi[axis] : own.lo[axis]) - origin) * inv_d, in);
-        out = smaller((Floats::all(p.negative[axis] ? own.lo[axis] : own.hi[axis]) - origin) * inv_d, out);
-    }
-    out = out * Floats::all(kFarScale) + Floats::all(kFarPad);
-    const Floats settled = smaller(larger(t, in), out) + Floats::all(0);
-    rays &= at_most(in, out) & at_most(Floats::load(p.start + first), settled) &
-            at_most(settled, Floats::load(p.limit + first)) &
-            at_most(settled, Floats::all(std::numeric_limits<float>::max()));
-    if (rays == 0) return;
-    alignas(64) float ts[kGroup];
-    alignas(64) double us[kGroup], vs[kGroup], ws[kGroup];
-    settled.store(ts);
-    u.store(us), v.store(vs), w.store(ws);
-    for (; rays; rays &= rays - 1) {
-        const auto k = static_cast<uint32_t>(__builtin_ctz(rays));
-        take<kMode>(p, first + k, ts[k], id, {us[k], vs[k], ws[k], {}});
-    }
-}
-
-/// The triangles of a leaf against the given rays.
-template <Mode kMode>
-inline void visit_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays) {
-    const TriangleBlock* block = world.upper.blocks + ChildRef::first(ref);
-    for (const TriangleBlock* end = block + ChildRef::count(ref); block < end; ++block)
-        for (uint32_t lane = 0; lane < kBlock && block->prim[lane] != kNoHit; ++lane) {
-            const Vec3 corner[3] = {block->corner(0, lane), block->corner(1, lane), block->corner(2, lane)};
-            const Box own = triangle_bounds(corner[0], corner[1], corner[2]);
-            for (uint32_t first = 0; first < kPacket; first += kGroup) {
-                const uint32_t group = rays >> first & ((1u << kGroup) - 1);
-                if (group) test_group<kMode>(p, corner, own, block->prim[lane], first, group);
-            }
-        }
-}
+#include "accel/kernels/packet_leaf.inl"
+#include "accel/kernels/packet_order.inl"
 
 template <Mode kMode>
 inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
     Flight& f = p.flights[i];
-    if (p.set_out >> i & 1) return f;
-    p.set_out |= 1u << i;
-    set_out<kMode>(f, world, p.ray[i], p.first + i);
+    if (p.started >> i & 1) return f;
+    p.started |= 1u << i;
+    set_out<kMode>(f, world, *p.ray[i], p.index[i]);
     return f;
 }
 
-/// What ray i has hit as part of the packet.
-inline Hit hit_of(const Packet& p, const World& world, uint32_t i) {
-    if (p.best[i] == kNoHit) return {};
-    Hit hit{p.limit[i], p.u[i], p.v[i], p.best[i]};
-    hit.instance = world.identify(hit.prim);
-    return hit;
+/// What ray i has hit as part of the packet. Member by member: a Hit that is put together in memory and then copied as
+/// a whole makes the processor wait.
+[[gnu::always_inline]] inline void get_hit(const Packet& p, const World& world, uint32_t i, Hit& hit) {
+    uint32_t prim = p.best[i], instance = kNoHit;
+    const bool found = prim != kNoHit;
+    if (found) instance = world.identify(prim);
+    hit.t = found ? p.limit[i] : kInfinity;
+    hit.u = found ? p.u[i] : 0;
+    hit.v = found ? p.v[i] : 0;
+    hit.prim = prim;
+    hit.instance = instance;
 }
 
 /// What a ray goes on with after its packet.
@@ -250,13 +198,16 @@ inline void go_on(Flight& f, const Hit& hit) {
 /// Visits all that a ray has taken from its packet so far, when that is as much as its stack has room for.
 template <Mode kMode>
 [[gnu::noinline]] void drain(Packet& p, const World& world, Flight& f, uint32_t i) {
-    go_on<kMode>(f, hit_of(p, world, i));
+    decide<kMode>(p, world);
+    Hit hit;
+    get_hit(p, world, i, hit);
+    go_on<kMode>(f, hit);
     walk<kMode>(f, world);
     f.depth = 0;
     f.push(kFinished);
     // From here on the flight keeps what was hit so far; go_on() compares.
     p.best[i] = kNoHit;
-    p.limit[i] = kMode == Mode::any && f.best.found() ? -kInfinity : f.best.t;
+    p.limit[i] = p.low[i] = kMode == Mode::any && f.best.found() ? -kInfinity : f.best.t;
 }
 
 /// Every one of the given rays takes the subtree onto its own stack.
@@ -274,78 +225,91 @@ inline void part(Packet& p, const World& world, uint32_t ref, uint32_t rays, con
 /// All rays of the packet, until each of them is nearly alone; what is left lies on their stacks.
 template <Mode kMode>
 inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
-    constexpr int kAlone = 2;
+    constexpr int kAlone = 1;
     uint32_t depth = 0;
     uint32_t ref = ChildRef::node(0), rays = (1u << kPacket) - 1;
-    const float* t_in = p.start;
+    const float *t_in = p.start, *planes = nullptr;
     while (true) {
         const bool leaf = ChildRef::is_leaf(ref);
-        const bool triangles = leaf && ChildRef::kind(ref) == ItemKind::block && p.same_axes;
-        if (__builtin_popcount(rays) <= kAlone || (leaf && !triangles)) {
+        if (__builtin_popcount(rays) <= kAlone || (leaf && ChildRef::kind(ref) != ItemKind::block)) {
             part<kMode>(p, world, ref, rays, t_in);
         } else if (leaf) {
-            visit_leaf<kMode>(p, world, ref, rays);
+            visit_leaf<kMode>(p, world, ref, rays, planes);
         } else {
             const WideNode& node = p.nodes[ref];
-            const uint32_t maybe = test_intervals(p, node);
-            for (const uint32_t order : node.order) {
-                const uint32_t child = order >> p.octant_shift & 7;
-                if (!(maybe >> child & 1)) continue;
+            for (uint32_t maybe = test_intervals(p, node); maybe; maybe &= maybe - 1) {
+                const uint32_t child = node.order[__builtin_ctz(maybe)] >> p.octant_shift & 7;
                 PacketEntry& entry = stack[depth];
                 entry.ref = node.child[child];
+                entry.planes = node.plane[0][0] + child;
                 entry.rays = test_child(p, node, child, rays, entry.t_in);
                 depth += entry.rays != 0;
             }
         }
         do {
-            if (depth == 0) return;
+            if (depth == 0) return decide<kMode>(p, world);
             const PacketEntry& top = stack[--depth];
-            ref = top.ref, t_in = top.t_in;
+            ref = top.ref, t_in = top.t_in, planes = top.planes;
             rays = top.rays & at_most(Float16::load(top.t_in), Float16::load(p.limit));
         } while (rays == 0);
     }
 }
 
-/// sink(index, hit) for every ray, in any order.
-template <Mode kMode, class Sink>
-inline void trace_coherent(const World& world, const Ray* rays, size_t count, Sink sink) {
-    if (world.upper.nodes == nullptr) return trace<kMode>(world, rays, nullptr, count, sink);
+/// finish(i, get): ray i of the batch is done, and get(hit) writes its hit. In any order.
+template <Mode kMode, class Finish>
+inline void trace_coherent(const World& world, const Ray* rays, size_t count, Finish finish) {
     Flight flights[kInFlight];
     // A node leaves at most seven siblings behind.
     PacketEntry stack[(kWidth - 1) * kMaxNodeLevels + kWidth];
     Packet packet;
     Queues<kInFlight> queues;
-    const auto finish = [&](const Flight& f) { sink(f.index, f.best.found() ? f.best : Hit{}); };
-    size_t used = 0;
-    for (size_t next = 0; next < count; next += kPacket) {
-        if (used + kPacket > kInFlight) queues.template run<kMode>(world, finish), used = 0;
+    const auto land = [&](const Flight& f) {
+        finish(f.index, [&](Hit& hit) { hit = f.best.found() ? f.best : Hit{}; });
+    };
+    ScanOrder order(rays, count);
+    uint32_t used = 0;
+    for (size_t done = 0; done < count; done += kPacket) {
+        const auto together = static_cast<uint32_t>(min_of<size_t>(count - done, kPacket));
+        for (uint32_t i = 0; i < together; ++i) {
+            const size_t index = order.next();
+            packet.index[i] = static_cast<uint32_t>(index);
+            packet.ray[i] = rays + index;
+        }
+        if (used + kPacket > kInFlight) queues.template run<kMode>(world, land), used = 0;
         packet.flights = flights + used;
-        packet.first = static_cast<uint32_t>(next);
-        const bool whole = next + kPacket <= count && gather(packet, world, rays + next);
+        const bool whole = together == kPacket && form(packet, world);
         if (whole) trace_packet<kMode>(packet, world, stack);
-        for (uint32_t i = 0; i < kPacket && next + i < count; ++i) {
+        for (uint32_t i = 0; i < together; ++i) {
             Flight& f = flights[used + i];
             if (whole) {
-                const Hit hit = hit_of(packet, world, i);
-                if ((packet.set_out >> i & 1) == 0 || (kMode == Mode::any && hit.found())) {
-                    sink(next + i, hit);
+                const bool started = packet.started >> i & 1;
+                if (!started || (kMode == Mode::any && packet.best[i] != kNoHit)) {
+                    finish(packet.index[i], [&](Hit& hit) { get_hit(packet, world, i, hit); });
                     continue;
                 }
+                Hit hit;
+                get_hit(packet, world, i, hit);
                 go_on<kMode>(f, hit);
-            } else if (!launch<kMode>(f, world, rays[next + i], nullptr, static_cast<uint32_t>(next + i))) {
-                sink(next + i, Hit{});
+            } else if (!launch<kMode>(f, world, *packet.ray[i], nullptr, packet.index[i])) {
+                finish(packet.index[i], [](Hit& hit) { hit = {}; });
                 continue;
             }
             queues.add(f);
         }
         used += kPacket;
     }
-    queues.template run<kMode>(world, finish);
+    queues.template run<kMode>(world, land);
 }
 
 void intersect_coherent(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
-    trace_coherent<Mode::closest>(world, rays, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
+    if (world.upper.nodes == nullptr) return intersect(world, rays, hits, count);
+    trace_coherent<Mode::closest>(world, rays, count, [&](size_t i, auto get) { get(hits[i]); });
 }
 void occluded_coherent(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
-    trace_coherent<Mode::any>(world, rays, count, [&](size_t i, const Hit& hit) { result[i] = hit.found(); });
+    if (world.upper.nodes == nullptr) return occluded(world, rays, result, count);
+    trace_coherent<Mode::any>(world, rays, count, [&](size_t i, auto get) {
+        Hit hit;
+        get(hit);
+        result[i] = hit.found();
+    });
 }

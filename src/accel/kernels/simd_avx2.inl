@@ -14,13 +14,35 @@ inline Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; 
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float8 larger(Float8 a, Float8 b) { return {_mm256_max_ps(a.v, b.v)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+inline Float8 magnitude(Float8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
+/// from[places[i]] in lane i, out of sixteen.
+inline Float8 pick(const float* from, const uint32_t* places) {
+    const __m256i at = _mm256_load_si256(reinterpret_cast<const __m256i*>(places));
+    const __m256 low = _mm256_permutevar8x32_ps(_mm256_load_ps(from), at);
+    const __m256 high = _mm256_permutevar8x32_ps(_mm256_load_ps(from + 8), at);
+    return {_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(at, 28)))};
+}
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }
 
+inline __m256i lanes_of(uint32_t bits) {
+    const __m256i own = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), own), own);
+}
+/// Where the bit is set a, else b.
+inline Float8 select(uint32_t bits, Float8 a, Float8 b) {
+    return {_mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(lanes_of(bits)))};
+}
+/// Writes the value where the bit is set.
+inline void set_where(uint32_t bits, uint32_t value, uint32_t* eight) {
+    _mm256_maskstore_epi32(reinterpret_cast<int*>(eight), lanes_of(bits), _mm256_set1_epi32(static_cast<int>(value)));
+}
+
 struct Double4 {
     __m256d v;
+    static Double4 of(Float4 a) { return {_mm256_cvtps_pd(a.v)}; }
     static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
     static Double4 load(const double* p) { return {_mm256_load_pd(p)}; }
     static Double4 all(double x) { return {_mm256_set1_pd(x)}; }
@@ -47,6 +69,13 @@ inline __m256i places_of(uint32_t bits) {
     return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(bytes)));
 }
 
+/// at_most(in, out) for the children of a node, each at its place in the order from far to near.
+inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
+    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    return at_most({_mm256_permutevar8x32_ps(in.v, lane)}, {_mm256_permutevar8x32_ps(out.v, lane)});
+}
+
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
 /// Writes up to kWidth entries, whatever the number.
 inline uint32_t push_met(Float8 in, Float8 out, float limit, const WideNode& node, uint32_t octant_shift, float* t_in,
@@ -70,4 +99,6 @@ inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
 
+#include "accel/kernels/avx_lanes.inl"
+inline Float4 gathered(const float* const* from, ptrdiff_t offset) { return gathered4(from, offset); }
 #include "accel/kernels/float16_pair.inl"

@@ -10,11 +10,27 @@ struct Float8 {
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
 inline Float8 operator-(Float8 a, Float8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
 inline Float8 operator*(Float8 a, Float8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+inline Float8 operator/(Float8 a, Float8 b) { return {_mm256_div_ps(a.v, b.v)}; }
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float8 larger(Float8 a, Float8 b) { return {_mm256_max_ps(a.v, b.v)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+inline Float8 magnitude(Float8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
+/// from[places[i]] in lane i, out of sixteen.
+inline Float8 pick(const float* from, const uint32_t* places) {
+    const __m256i at = _mm256_load_si256(reinterpret_cast<const __m256i*>(places));
+    return {_mm256_permutex2var_ps(_mm256_load_ps(from), at, _mm256_load_ps(from + 8))};
+}
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) { return _mm256_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ); }
+
+/// Where the bit is set a, else b.
+inline Float8 select(uint32_t bits, Float8 a, Float8 b) {
+    return {_mm256_mask_blend_ps(static_cast<__mmask8>(bits), b.v, a.v)};
+}
+/// Writes the value where the bit is set.
+inline void set_where(uint32_t bits, uint32_t value, uint32_t* eight) {
+    _mm256_mask_storeu_epi32(eight, static_cast<__mmask8>(bits), _mm256_set1_epi32(static_cast<int>(value)));
+}
 
 struct Double4 {
     __m256d v;
@@ -32,6 +48,13 @@ inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)};
 /// Bit i where a >= 0, or a <= 0, in lane i.
 inline uint32_t not_negative(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_GE_OQ); }
 inline uint32_t not_positive(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_LE_OQ); }
+
+/// at_most(in, out) for the children of a node, each at its place in the order from far to near.
+inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
+    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    return at_most({_mm256_permutexvar_ps(lane, in.v)}, {_mm256_permutexvar_ps(lane, out.v)});
+}
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
 /// Writes up to kWidth entries, whatever the number.
@@ -66,6 +89,7 @@ inline Float16 operator+(Float16 a, Float16 b) { return {_mm512_add_ps(a.v, b.v)
 inline Float16 operator-(Float16 a, Float16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
 inline Float16 operator*(Float16 a, Float16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
 inline Float16 operator/(Float16 a, Float16 b) { return {_mm512_div_ps(a.v, b.v)}; }
+inline Float16 magnitude(Float16 a) { return {_mm512_abs_ps(a.v)}; }
 /// Of all lanes, none of which is NaN.
 inline float least(Float16 a) { return _mm512_reduce_min_ps(a.v); }
 inline float largest(Float16 a) { return _mm512_reduce_max_ps(a.v); }
@@ -75,6 +99,7 @@ inline uint32_t at_most(Float16 a, Float16 b) { return _mm512_cmp_ps_mask(a.v, b
 
 struct Double8 {
     __m512d v;
+    static Double8 of(Float8 a) { return {_mm512_cvtps_pd(a.v)}; }
     static Double8 load(const double* p) { return {_mm512_load_pd(p)}; }
     static Double8 all(double x) { return {_mm512_set1_pd(x)}; }
     void store(double* p) const { _mm512_store_pd(p, v); }
@@ -93,3 +118,9 @@ inline uint32_t not_positive(Double8 a) { return _mm512_cmp_pd_mask(a.v, _mm512_
 using Doubles = Double8;
 using Floats = Float8;
 inline constexpr uint32_t kGroup = 8;
+
+#include "accel/kernels/avx_lanes.inl"
+/// from[lane][offset] in every lane.
+inline Float8 gathered(const float* const* from, ptrdiff_t offset) {
+    return {_mm256_set_m128(gathered4(from + 4, offset).v, gathered4(from, offset).v)};
+}

@@ -16,6 +16,7 @@ inline float32x4_t larger(float32x4_t a, float32x4_t b) { return vbslq_f32(vcgtq
 inline float32x4_t smaller(float32x4_t a, float32x4_t b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 inline Float8 larger(Float8 a, Float8 b) { return {larger(a.lo, b.lo), larger(a.hi, b.hi)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {smaller(a.lo, b.lo), smaller(a.hi, b.hi)}; }
+inline Float8 magnitude(Float8 a) { return {vabsq_f32(a.lo), vabsq_f32(a.hi)}; }
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) {
     static const uint32_t kBits[8] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -26,10 +27,8 @@ inline uint32_t at_most(Float8 a, Float8 b) {
 
 struct Double4 {
     float64x2_t lo, hi;
-    static Double4 of_floats(const float* p) {
-        const float32x4_t floats = vld1q_f32(p);
-        return {vcvt_f64_f32(vget_low_f32(floats)), vcvt_high_f64_f32(floats)};
-    }
+    static Double4 of(Float4 a) { return {vcvt_f64_f32(vget_low_f32(a.v)), vcvt_high_f64_f32(a.v)}; }
+    static Double4 of_floats(const float* p) { return of(Float4::load(p)); }
     static Double4 load(const double* p) { return {vld1q_f64(p), vld1q_f64(p + 2)}; }
     static Double4 all(double x) { return {vdupq_n_f64(x), vdupq_n_f64(x)}; }
     void store(double* p) const { vst1q_f64(p, lo), vst1q_f64(p + 2, hi); }
@@ -53,4 +52,4 @@ inline uint32_t not_negative(Double4 a) { return bits_of(vcgezq_f64(a.lo), vcgez
 inline uint32_t not_positive(Double4 a) { return bits_of(vclezq_f64(a.lo), vclezq_f64(a.hi)); }
 
 #include "accel/kernels/float16_pair.inl"
-#include "accel/kernels/push_met.inl"
+#include "accel/kernels/generic_lanes.inl"

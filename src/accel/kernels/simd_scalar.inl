@@ -8,6 +8,10 @@ struct Lanes {
         for (int i = 0; i < kLanes; ++i) a.v[i] = p[i];
         return a;
     }
+    template <class U>
+    static Lanes of(const Lanes<U, kLanes>& b) {
+        return of_floats(b.v);
+    }
     static Lanes of_floats(const float* p) {
         Lanes a;
         for (int i = 0; i < kLanes; ++i) a.v[i] = p[i];
@@ -56,6 +60,11 @@ inline Lanes<T, kLanes> smaller(const Lanes<T, kLanes>& a, const Lanes<T, kLanes
 using Float8 = Lanes<float, 8>;
 using Double4 = Lanes<double, 4>;
 using Float4 = Lanes<float, 4>;
+inline Float8 magnitude(const Float8& a) {
+    Float8 out;
+    for (int i = 0; i < 8; ++i) out.v[i] = std::fabs(a.v[i]);
+    return out;
+}
 inline Float4 to_floats(const Double4& a) {
     Float4 out;
     for (int i = 0; i < 4; ++i) out.v[i] = static_cast<float>(a.v[i]);
@@ -82,4 +91,4 @@ inline uint32_t not_positive(const Double4& a) {
 }
 
 #include "accel/kernels/float16_pair.inl"
-#include "accel/kernels/push_met.inl"
+#include "accel/kernels/generic_lanes.inl"

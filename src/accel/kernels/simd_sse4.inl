@@ -14,6 +14,10 @@ inline Float8 operator/(Float8 a, Float8 b) { return {_mm_div_ps(a.lo, b.lo), _m
 /// a > b ? a : b and a < b ? a : b, also for NaN: b then.
 inline Float8 larger(Float8 a, Float8 b) { return {_mm_max_ps(a.lo, b.lo), _mm_max_ps(a.hi, b.hi)}; }
 inline Float8 smaller(Float8 a, Float8 b) { return {_mm_min_ps(a.lo, b.lo), _mm_min_ps(a.hi, b.hi)}; }
+inline Float8 magnitude(Float8 a) {
+    const __m128 sign = _mm_set1_ps(-0.0f);
+    return {_mm_andnot_ps(sign, a.lo), _mm_andnot_ps(sign, a.hi)};
+}
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float8 a, Float8 b) {
     return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.lo, b.lo)) | _mm_movemask_ps(_mm_cmple_ps(a.hi, b.hi))
@@ -22,10 +26,8 @@ inline uint32_t at_most(Float8 a, Float8 b) {
 
 struct Double4 {
     __m128d lo, hi;
-    static Double4 of_floats(const float* p) {
-        const __m128 floats = _mm_load_ps(p);
-        return {_mm_cvtps_pd(floats), _mm_cvtps_pd(_mm_movehl_ps(floats, floats))};
-    }
+    static Double4 of(Float4 a) { return {_mm_cvtps_pd(a.v), _mm_cvtps_pd(_mm_movehl_ps(a.v, a.v))}; }
+    static Double4 of_floats(const float* p) { return of(Float4::load(p)); }
     static Double4 load(const double* p) { return {_mm_load_pd(p), _mm_load_pd(p + 2)}; }
     static Double4 all(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
     void store(double* p) const { _mm_store_pd(p, lo), _mm_store_pd(p + 2, hi); }
@@ -50,4 +52,4 @@ inline uint32_t not_positive(Double4 a) {
 }
 
 #include "accel/kernels/float16_pair.inl"
-#include "accel/kernels/push_met.inl"
+#include "accel/kernels/generic_lanes.inl"
