@@ -1,5 +1,6 @@
 #include "accel/accel.h"
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <string>
@@ -21,12 +22,14 @@ struct Built {
     std::vector<Level> levels;  ///< by geometry; empty for those that are on the upper level, or nowhere
     std::vector<LevelView> views;
     std::vector<ShapesView> shapes;
+    std::vector<const uint8_t*> cut_outs;  ///< by instance; empty when everything is opaque
 
     World world() const {
         World w;
         w.upper = upper.view();
         w.parts = parts.data(), w.part_count = static_cast<uint32_t>(parts.size());
         w.instances = instances.data(), w.levels = views.data(), w.shapes = shapes.data();
+        w.cut_outs = cut_outs.empty() ? nullptr : cut_outs.data();
         return w;
     }
 };
@@ -59,7 +62,7 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
         return make_error(ErrorCode::resources, std::to_string(items) +
                                                     " primitives and instances, more than the limit of " +
                                                     std::to_string(ChildRef::kMaxItems - 1));
-    for (size_t i = 0; i < instances.size(); ++i)
+    for (size_t i = 0; i < instances.size(); ++i) {
         if (instances[i].geometry >= geometries.size())
             return Error{ErrorCode::bad_input,
                          "instance " + std::to_string(i) + " is of geometry " + std::to_string(instances[i].geometry) +
@@ -67,7 +70,25 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
                          {},
                          {},
                          {}};
+        const size_t bytes = instances[i].cut_outs.size();
+        const size_t expected = (primitive_count(geometries[instances[i].geometry]) + 7) / 8;
+        if (bytes != 0 && bytes != expected)
+            return make_error(ErrorCode::bad_input, "instance " + std::to_string(i) + ": " + std::to_string(bytes) +
+                                                        " bytes of cut-outs, expected " + std::to_string(expected));
+    }
     return Ok{};
+}
+
+/// By instance; nothing when there are none, so that everything runs as if there could be none.
+std::vector<const uint8_t*> find_cut_outs(std::span<const GeometryInstance> instances) {
+    std::vector<const uint8_t*> found;
+    for (size_t i = 0; i < instances.size(); ++i) {
+        const std::span<const uint8_t> bits = instances[i].cut_outs;
+        if (std::all_of(bits.begin(), bits.end(), [](uint8_t byte) { return byte == 0; })) continue;
+        found.resize(instances.size());
+        found[i] = bits.data();
+    }
+    return found;
 }
 
 /// Geometries that are on the upper level: in one place only, and not transformed. (In several places they would be
@@ -174,7 +195,7 @@ AccelStatistics count(std::span<const Geometry> geometries, const Built& built) 
     for (const Level& level : built.levels) add(level);
     add(built.upper);
     s.bytes += bytes_of(built.levels) + bytes_of(built.views) + bytes_of(built.shapes) + bytes_of(built.parts) +
-               bytes_of(built.instances);
+               bytes_of(built.instances) + bytes_of(built.cut_outs);
     return s;
 }
 
@@ -201,6 +222,7 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         if (Status status = build_levels(geometries, upper, options, cancelled, built); !status) return status.error();
         if (Status status = build_upper(geometries, instances, upper, options, cancelled, built); !status)
             return status.error();
+        built.cut_outs = find_cut_outs(instances);
         data->statistics = count(geometries, built);
         data->statistics.bytes += sizeof(Data);
         data->world = data->built.world();
@@ -222,8 +244,10 @@ void Accel::intersect(std::span<const Ray> rays, std::span<Hit> hits, RayKind ki
 void Accel::occluded(std::span<const Ray> rays, std::span<uint8_t> result, RayKind kind) const noexcept {
     const FloatMode mode;
     const Kernels& k = *data_->kernels;
-    (kind == RayKind::coherent ? k.occluded_coherent : k.occluded)(data_->world, rays.data(), result.data(),
-                                                                   rays.size());
+    const auto kernel = data_->world.cut_outs       ? k.occluded_or_cut_out
+                        : kind == RayKind::coherent ? k.occluded_coherent
+                                                    : k.occluded;
+    kernel(data_->world, rays.data(), result.data(), rays.size());
 }
 
 void Accel::next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept {
@@ -237,10 +261,10 @@ Hit Accel::intersect(const Ray& ray) const noexcept {
     return hit;
 }
 
-bool Accel::occluded(const Ray& ray) const noexcept {
+Accel::Occlusion Accel::occluded(const Ray& ray) const noexcept {
     uint8_t result = 0;
     occluded({&ray, 1}, {&result, 1});
-    return result != 0;
+    return static_cast<Occlusion>(result);
 }
 
 Accel::Bounds Accel::bounds() const noexcept { return {data_->built.upper.bounds.lo, data_->built.upper.bounds.hi}; }

@@ -45,6 +45,9 @@ using Geometry = std::variant<TriangleGeometry, std::span<const SphereGeometry>,
 struct GeometryInstance {
     uint32_t geometry = 0;
     Affine world_from_object;
+    /// Primitives that may let rays pass here, such as leaves with an alpha texture: bit i % 8 of byte i / 8 for
+    /// primitive i, in ceil(primitives / 8) bytes, which must outlive the Accel. Empty: all of them are opaque.
+    std::span<const uint8_t> cut_outs = {};
 };
 
 struct AccelOptions {
@@ -71,27 +74,35 @@ class Accel {
 public:
     /// Primitives with coordinates that are not finite or beyond kMaxCoordinate, or with a negative radius, are refused
     /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
-    /// geometries that do not exist; a transform that is singular, scales beyond 1e±30 or leads beyond kMaxCoordinate.
-    /// `usage` for a max_depth out of range or an instruction set that the machine lacks, `resources` when memory runs
-    /// out or there are 2^27 primitives and instances or more, `render_failed` when cancelled. Uses the workers of the
-    /// caller's arena (base/parallel.h).
+    /// geometries that do not exist; cut_outs of another size; a transform that is singular, scales beyond 1e±30 or
+    /// leads beyond kMaxCoordinate. `usage` for a max_depth out of range or an instruction set that the machine lacks,
+    /// `resources` when memory runs out or there are 2^27 primitives and instances or more, `render_failed` when
+    /// cancelled. Uses the workers of the caller's arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
     Accel(Accel&&) noexcept;
     Accel& operator=(Accel&&) noexcept;
     ~Accel();
 
-    /// hits.size() == rays.size() < 2^32. A ray that hits nothing gets Hit{}. Takes about 400 kB of the caller's stack,
-    /// as the other calls do.
+    /// The closest hits, of cut-outs as of anything else: what passes is for the caller to decide, who goes on with
+    /// next_hit(). hits.size() == rays.size() < 2^32. A ray that hits nothing gets Hit{}. Takes about 400 kB of the
+    /// caller's stack, as the other calls do.
     void intersect(std::span<const Ray> rays, std::span<Hit> hits, RayKind kind = RayKind::incoherent) const noexcept;
-    /// 1 where any primitive lies within [tmin, tmax], else 0.
+    /// What lies within [tmin, tmax] of a ray.
+    enum Occlusion : uint8_t {
+        clear = 0,    ///< nothing
+        blocked = 1,  ///< something opaque, whatever else there is
+        cut_out = 2,  ///< nothing but cut-outs: intersect() finds the first of them, next_hit() the others
+    };
+    /// An Occlusion for every ray. Without cut-outs, and only then, coherent rays are faster than others.
     void occluded(std::span<const Ray> rays, std::span<uint8_t> result,
                   RayKind kind = RayKind::incoherent) const noexcept;
-    /// The hit that follows `after[i]` in the order (t, instance, prim) along the same ray; for cut-outs.
+    /// The hit that follows `after[i]` in the order (t, instance, prim) along the same ray, opaque or not; for
+    /// cut-outs.
     void next_hit(std::span<const Ray> rays, std::span<const Hit> after, std::span<Hit> hits) const noexcept;
 
     Hit intersect(const Ray& ray) const noexcept;
-    bool occluded(const Ray& ray) const noexcept;
+    Occlusion occluded(const Ray& ray) const noexcept;
 
     /// World bounds of everything; lo > hi when there is nothing.
     struct Bounds {

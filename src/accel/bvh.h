@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -35,22 +34,24 @@ struct Bvh {
 
 inline constexpr uint32_t kBlock = 4;
 
-/// Asks the caller's function from one thread at a time and remembers a yes.
+/// Asks the caller's function from one thread at a time and remembers a yes. A thread that finds another one asking, or
+/// that is asked again from within the function, goes on with what is known.
 class Cancellation {
 public:
     explicit Cancellation(const std::function<bool()>& asked) : asked_(asked) {}
     bool poll() {
         if (stop_.load(std::memory_order_relaxed)) return true;
         if (!asked_) return false;
-        const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (lock && asked_()) stop_ = true;
+        // Not a mutex: one thread may get here twice, when the function waits for tasks that poll.
+        if (asking_.exchange(true, std::memory_order_acquire)) return stop_.load(std::memory_order_relaxed);
+        if (asked_()) stop_.store(true, std::memory_order_relaxed);
+        asking_.store(false, std::memory_order_release);
         return stop_.load(std::memory_order_relaxed);
     }
 
 private:
     const std::function<bool()>& asked_;
-    std::mutex mutex_;
-    std::atomic<bool> stop_{false};
+    std::atomic<bool> asking_{false}, stop_{false};
 };
 
 struct BvhOptions {

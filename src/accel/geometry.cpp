@@ -151,7 +151,7 @@ LargeArray<TriangleBlock> pack(std::span<const Geometry> geometries, std::span<c
 
 LevelView Level::view() const {
     if (nodes.empty()) return {};
-    return {nodes.data(), blocks.empty() ? nullptr : blocks.data(), entries.data()};
+    return {nodes.data(), blocks.empty() ? &kNoBlocks : blocks.data(), entries.data()};
 }
 
 size_t primitive_count(const Geometry& geometry) {

@@ -17,4 +17,8 @@ struct alignas(32) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160);
 
+/// Stands for the blocks of a level without triangles: the kernels prefetch before they know what is there, and an
+/// address without memory behind it would cost more than one that has some.
+inline constexpr TriangleBlock kNoBlocks{};
+
 }  // namespace steradian

@@ -18,7 +18,7 @@ struct LeafEntry {
 /// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
 struct LevelView {
     const WideNode* nodes = nullptr;
-    const TriangleBlock* blocks = nullptr;  ///< nullptr where there are no triangles
+    const TriangleBlock* blocks = &kNoBlocks;  ///< that where there are no triangles
     const LeafEntry* entries = nullptr;
 };
 
@@ -43,7 +43,14 @@ struct World {
     const PlacedGeometry* instances = nullptr;
     const LevelView* levels = nullptr;   ///< by geometry
     const ShapesView* shapes = nullptr;  ///< by geometry
+    /// By instance, a bit for each primitive; nullptr where all are opaque, and instead of the array when everything
+    /// is.
+    const uint8_t* const* cut_outs = nullptr;
 
+    bool is_cut_out(const Hit& hit) const {
+        const uint8_t* bits = cut_outs[hit.instance];
+        return bits && (bits[hit.prim / 8] >> (hit.prim % 8) & 1);
+    }
     /// The instance of a triangle of the upper level; `id` becomes its primitive.
     uint32_t identify(uint32_t& id) const {
         uint32_t part = 0;

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <optional>
 #include <thread>
 
+#include "accel/bvh.h"
 #include "accel/wide_node.h"
 #include "base/parallel.h"
 #include "scenes.h"
@@ -118,18 +120,26 @@ TEST(Build, SameForAnyNumberOfThreads) {
     scene.finish(3);
     const std::vector<Ray> rays = hard_rays(scene, 3000, 10);
     std::vector<Hit> expected;
-    for (const uint32_t threads : {1u, 2u, 7u})
-        for (const BvhBuilder builder : kBuilders)
+    for (const BvhBuilder builder : kBuilders) {
+        std::optional<AccelStatistics> statistics;
+        for (const uint32_t threads : {1u, 2u, 7u})
             with_threads(threads, [&] {
                 AccelOptions options;
                 options.builder = builder;
                 const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
                 ASSERT_TRUE(accel);
+                const AccelStatistics& s = accel->statistics();
+                if (!statistics) statistics = s;
+                EXPECT_EQ(s.nodes, statistics->nodes);
+                EXPECT_EQ(s.leaves, statistics->leaves);
+                EXPECT_EQ(s.depth, statistics->depth);
+                EXPECT_EQ(s.bytes, statistics->bytes);
                 std::vector<Hit> hits(rays.size());
                 accel->intersect(rays, hits);
                 if (expected.empty()) expected = hits;
                 for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], expected[i]));
             });
+    }
 }
 
 TEST(Build, Cancelled) {
@@ -147,6 +157,57 @@ TEST(Build, Cancelled) {
         ASSERT_FALSE(accel);
         EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
     }
+}
+
+/// Wherever a build is when it is told to stop, it says so; at the first question that is answered by a yes, it stops.
+TEST(Build, CancelledAtEveryPoint) {
+    TestScene scene("both levels");
+    TriangleMesh mesh;
+    for (int i = 0; i < 20'000; ++i) {
+        const auto x = static_cast<float>(i);
+        mesh.add({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0});
+    }
+    scene.meshes = {mesh, mesh, icosphere(1)};
+    std::vector<SphereGeometry> spheres;
+    for (int i = 0; i < 5'000; ++i) spheres.push_back({{static_cast<float>(i), 2, 0}, 0.5f});
+    scene.spheres.push_back(std::move(spheres));
+    scene.instances = {{0, {}}, {1, translation(0, 5, 0)}, {1, translation(0, 9, 0)}, {3, {}}};
+    for (int i = 0; i < 5'000; ++i) scene.instances.push_back({2, translation(i, -3, 0)});
+    for (const BvhBuilder builder : kBuilders)
+        with_threads(1, [&] {
+            AccelOptions options;
+            options.builder = builder;
+            int asked = 0, yes_at = -1;
+            options.cancelled = [&] { return asked++ == yes_at; };
+            ASSERT_TRUE(Accel::build(scene.geometries(), scene.instances, options));
+            const int total = asked;
+            EXPECT_GT(total, 20);
+            for (yes_at = 0; yes_at < total; ++yes_at) {
+                asked = 0;
+                const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_FALSE(accel) << yes_at;
+                EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
+                EXPECT_EQ(asked, yes_at + 1);
+            }
+        });
+}
+
+/// A function that waits for tasks, one of which polls, on the thread that is asking already.
+TEST(Build, CancellationMayBeAskedWhileItAsks) {
+    int asked = 0, inner = 0;
+    Cancellation* self = nullptr;
+    const std::function<bool()> function = [&] {
+        inner += self->poll();
+        return asked++ == 1;
+    };
+    Cancellation cancellation(function);
+    self = &cancellation;
+    EXPECT_FALSE(cancellation.poll());
+    EXPECT_EQ(asked, 1);
+    EXPECT_TRUE(cancellation.poll());
+    EXPECT_TRUE(cancellation.poll());
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(inner, 0);
 }
 
 TEST(Build, CountsItsBytes) {

@@ -438,9 +438,15 @@ std::vector<Ray> hard_rays(const TestScene& scene, size_t count, uint64_t seed) 
     return rays;
 }
 
+void TestScene::set_cut_outs(size_t instance, std::vector<uint8_t> bits) {
+    cut_outs.push_back(std::move(bits));
+    instances[instance].cut_outs = cut_outs.back();
+}
+
 struct BruteForce::Data {
     std::vector<Geometry> geometries;
     std::vector<PlacedGeometry> instances;
+    std::vector<std::vector<uint8_t>> cut_outs;  ///< by instance
 };
 
 namespace {
@@ -507,6 +513,7 @@ BruteForce::BruteForce(const TestScene& scene) : data_(std::make_unique<Data>())
         EachBox bounds;
         std::visit(bounds, data_->geometries[instance.geometry]);
         data_->instances.push_back(*place(instance.geometry, instance.world_from_object, bounds.box));
+        data_->cut_outs.emplace_back(instance.cut_outs.begin(), instance.cut_outs.end());
     }
 }
 BruteForce::~BruteForce() = default;
@@ -546,6 +553,19 @@ Hit BruteForce::first_hit(const Ray& ray) const {
         if (!best.found() || ordered(hit, best)) best = hit;
     });
     return best;
+}
+
+Accel::Occlusion BruteForce::occlusion(const Ray& ray) const {
+    Accel::Occlusion result = Accel::clear;
+    each(ray, [&](const Hit& hit) {
+        const std::vector<uint8_t>& bits = data_->cut_outs[hit.instance];
+        const bool cut_out = !bits.empty() && (bits[hit.prim / 8] & 1u << (hit.prim % 8)) != 0;
+        if (!cut_out || result == Accel::blocked)
+            result = Accel::blocked;
+        else
+            result = Accel::cut_out;
+    });
+    return result;
 }
 
 bool same_bits(const Hit& a, const Hit& b) {

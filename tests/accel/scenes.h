@@ -36,13 +36,16 @@ struct TestScene {
     std::vector<std::vector<SphereGeometry>> spheres;
     std::vector<std::vector<RectangleGeometry>> rectangles;
     std::vector<std::vector<DiskGeometry>> disks;
-    std::vector<GeometryInstance> instances;  ///< geometries in the order meshes, spheres, rectangles, disks
-    std::vector<Vec3> points;                 ///< in the world: vertices, points on edges, rims and surfaces
-    double size = 1;                          ///< how far rays start from what they are aimed at
+    std::vector<GeometryInstance> instances;     ///< geometries in the order meshes, spheres, rectangles, disks
+    std::vector<std::vector<uint8_t>> cut_outs;  ///< what the instances refer to
+    std::vector<Vec3> points;                    ///< in the world: vertices, points on edges, rims and surfaces
+    double size = 1;                             ///< how far rays start from what they are aimed at
 
     std::vector<Geometry> geometries() const;
     /// Fills `points` and, when there are none, one instance without a transform of every geometry.
     void finish(uint64_t seed);
+    /// The bits of one instance.
+    void set_cut_outs(size_t instance, std::vector<uint8_t> bits);
 };
 
 std::vector<TestScene> hard_scenes();
@@ -58,6 +61,7 @@ public:
     ~BruteForce();
     std::vector<Hit> all_hits(const Ray& ray) const;
     Hit first_hit(const Ray& ray) const;
+    Accel::Occlusion occlusion(const Ray& ray) const;
 
 private:
     template <class Sink>

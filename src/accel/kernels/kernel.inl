@@ -7,7 +7,14 @@
 //
 // What is on the path of every ray is inlined by force: a call costs all vector registers. What is rare is kept out.
 
-enum class Mode { closest, any, after };
+enum class Mode {
+    closest,
+    any,
+    after,
+    opaque,  ///< any hit that is not of a cut-out; Flight::after is one that is, if there was one
+};
+/// Whether one hit is as good as another.
+constexpr bool is_any(Mode mode) { return mode == Mode::any || mode == Mode::opaque; }
 
 /// What a ray takes with it from a packet (packet.inl), at most, before it has to visit it.
 inline constexpr uint32_t kMaxParted = 64;
@@ -62,7 +69,7 @@ inline void set_level(Flight& f, const LevelView& level, const Ray& ray) {
         f.far_plane[axis] = f.near_plane[axis] ^ sizeof(float[kWidth]);
         f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
     }
-    if (level.blocks) f.triangle_ray = TriangleRay(ray);
+    if (level.blocks != &kNoBlocks) f.triangle_ray = TriangleRay(ray);
 }
 
 /// Inside a transformed instance t is clamped once more, and an end of the range that this can reach does not bound the
@@ -76,9 +83,13 @@ inline void set_range(Flight& f) {
 
 /// A candidate whose t is settled and within the ray's range. False when another hit comes first.
 template <Mode kMode>
-inline bool accept(Flight& f, const Hit& hit) {
+inline bool accept(Flight& f, const World& world, const Hit& hit) {
     if (!comes_before(hit, f.best)) return false;
     if (kMode == Mode::after && !comes_before(f.after, hit)) return false;
+    if (kMode == Mode::opaque && world.is_cut_out(hit)) {
+        f.after = hit;
+        return false;
+    }
     f.best = hit;
     f.limit = hit.t < f.world.out ? hit.t : kInfinity;
     return true;
@@ -86,15 +97,15 @@ inline bool accept(Flight& f, const Hit& hit) {
 
 /// True when the query is done.
 template <Mode kMode>
-inline bool offer(Flight& f, Hit hit, Interval own) {
-    return settle(hit.t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, hit) && kMode == Mode::any;
+inline bool offer(Flight& f, const World& world, Hit hit, Interval own) {
+    return settle(hit.t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, world, hit) && is_any(kMode);
 }
 
 /// What lies on top of the stack and can still hold what is sought. At the bottom lies kFinished.
 template <Mode kMode>
 inline uint32_t pop(Flight& f) {
     do --f.depth;
-    while (kMode != Mode::any && f.t_in[f.depth] > f.limit);
+    while (!is_any(kMode) && f.t_in[f.depth] > f.limit);
     return f.ref[f.depth];
 }
 
@@ -118,8 +129,8 @@ inline void visit_node(Flight& f) {
     const WideNode& node = f.level.nodes[f.next];
     Float8 in, out;
     test_children(f, node, in, out);
-    if (kMode == Mode::any) {
-        // One hit is as good as another: neither order nor distances matter, and the limit never falls.
+    if (is_any(kMode)) {
+        // Neither order nor distances matter, and the limit never falls.
         f.depth += push_met(at_most(in, out) & at_most(in, Float8::all(f.limit)), node, &f.ref[f.depth]);
     } else {
         f.depth += push_met(in, out, f.limit, node, f.octant_shift, &f.t_in[f.depth], &f.ref[f.depth]);
@@ -147,7 +158,7 @@ inline void visit_node_alone(Flight& f) {
         auto child = static_cast<uint32_t>(__builtin_ctz(met));
         if (t_in[child] < t_in[nearest]) std::swap(child, nearest);
         uint32_t place = f.depth++;
-        for (; kMode != Mode::any && place > base && f.t_in[place - 1] < t_in[child]; --place) {
+        for (; !is_any(kMode) && place > base && f.t_in[place - 1] < t_in[child]; --place) {
             f.t_in[place] = f.t_in[place - 1];
             f.ref[place] = f.ref[place - 1];
         }
@@ -171,7 +182,7 @@ template <Mode kMode>
     if (block.prim[lane] == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
     Hit hit{c.t, c.u, c.v};
     identify(f, world, block.prim[lane], hit);
-    return offer<kMode>(f, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
+    return offer<kMode>(f, world, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
 }
 
 /// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
@@ -235,8 +246,8 @@ template <Mode kMode>
         if (block.prim[lane] == kNoHit) continue;
         Hit hit{settled[lane]};
         identify(f, world, block.prim[lane], hit);
-        if (!accept<kMode>(f, hit)) continue;
-        if (kMode == Mode::any) return true;
+        if (!accept<kMode>(f, world, hit)) continue;
+        if (is_any(kMode)) return true;
         const EdgeFunctions edges{us[lane], vs[lane], ws[lane], {}};
         edges.weights(f.best.u, f.best.v);
     }
@@ -245,18 +256,19 @@ template <Mode kMode>
 
 /// True when the query is done.
 template <Mode kMode>
-[[gnu::noinline]] bool test_shape(Flight& f, const ShapesView& shapes, uint32_t instance, const LeafEntry& entry) {
+[[gnu::noinline]] bool test_shape(Flight& f, const World& world, uint32_t instance, const LeafEntry& entry) {
+    const ShapesView& shapes = world.shapes[world.instances[instance].geometry];
     const uint32_t prim = entry.prim;
     if (shapes.spheres) {
         const SphereCandidates c = intersect_sphere(f.ray, shapes.spheres[prim]);
         for (int i = 0; i < c.count; ++i)
-            if (offer<kMode>(f, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab()))) return true;
+            if (offer<kMode>(f, world, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab()))) return true;
         return false;
     }
     PlanarCandidate c;
     const bool met = shapes.rectangles ? intersect_rectangle(f.ray, shapes.rectangles[prim], c)
                                        : intersect_disk(f.ray, shapes.disks[prim], c);
-    return met && offer<kMode>(f, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab()));
+    return met && offer<kMode>(f, world, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab()));
 }
 
 /// A run of blocks. True when the query is done.
@@ -274,7 +286,7 @@ inline bool visit_shapes(Flight& f, const World& world, uint32_t ref) {
     const LeafEntry* entry = f.level.entries + ChildRef::first(ref);
     for (const LeafEntry* end = entry + ChildRef::count(ref); entry < end; ++entry) {
         const uint32_t instance = f.instance != kNoHit ? f.instance : entry->instance;
-        if (test_shape<kMode>(f, world.shapes[world.instances[instance].geometry], instance, *entry)) return true;
+        if (test_shape<kMode>(f, world, instance, *entry)) return true;
     }
     return false;
 }
@@ -363,8 +375,21 @@ inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* afte
         if (!after->found()) return false;
         f.after = *after;
     }
+    if (kMode == Mode::opaque) f.after = {};
     set_out<kMode>(f, world, ray, index);
     return true;
+}
+
+/// The answer of a ray at its end. Without a hit in Mode::opaque the instance of a cut-out is set, if there was one.
+template <Mode kMode>
+inline Hit answer(const Flight& f) {
+    if (f.best.found()) return f.best;
+    Hit none;
+    if (kMode == Mode::opaque) none.instance = f.after.instance;
+    return none;
+}
+inline uint8_t occlusion(const Hit& hit) {
+    return hit.found() ? Accel::blocked : hit.instance != kNoHit ? Accel::cut_out : Accel::clear;
 }
 
 /// Asks for the memory of what comes next. Without a branch, as nobody can guess whether that is a node or a leaf; what
@@ -376,11 +401,11 @@ inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* afte
     const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(WideNode);
     const uintptr_t block =
         reinterpret_cast<uintptr_t>(f.level.blocks) + (ChildRef::first(f.next) & blocks) * sizeof(TriangleBlock);
-    const char* place = reinterpret_cast<const char*>((block & leaf) | (node & ~leaf));
-    __builtin_prefetch(place);
-    __builtin_prefetch(place + 64);
-    __builtin_prefetch(place + 128);
-    __builtin_prefetch(place + 192);
+    const uintptr_t place = (block & leaf) | (node & ~leaf);
+    __builtin_prefetch(reinterpret_cast<const char*>(place));
+    __builtin_prefetch(reinterpret_cast<const char*>(place + 64));
+    __builtin_prefetch(reinterpret_cast<const char*>(place + 128));
+    __builtin_prefetch(reinterpret_cast<const char*>(place + 192));
 }
 
 /// Rays on their way, in two queues, because whether a ray is at a node or at a leaf next is the one thing that a
@@ -446,7 +471,7 @@ inline void trace(const World& world, const Ray* rays, const Hit* after, size_t 
     };
     for (Flight& f : flights) start(f);
     queues.template run<kMode>(world, [&](Flight& f) {
-        sink(f.index, f.best.found() ? f.best : Hit{});
+        sink(f.index, answer<kMode>(f));
         start(f);
     });
 }
@@ -468,27 +493,5 @@ inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
     Flight f;
     if (!launch<kMode>(f, world, ray, after, 0)) return {};
     walk<kMode>(f, world);
-    return f.best.found() ? f.best : Hit{};
-}
-
-void intersect(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
-    if (count == 1) {
-        *hits = trace_one<Mode::closest>(world, *rays, nullptr);
-        return;
-    }
-    trace<Mode::closest>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
-}
-void occluded(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
-    if (count == 1) {
-        *result = trace_one<Mode::any>(world, *rays, nullptr).found();
-        return;
-    }
-    trace<Mode::any>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = hit.found(); });
-}
-void next_hit(const World& world, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept {
-    if (count == 1) {
-        *hits = trace_one<Mode::after>(world, *rays, after);
-        return;
-    }
-    trace<Mode::after>(world, rays, after, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
+    return answer<kMode>(f);
 }

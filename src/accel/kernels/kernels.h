@@ -14,10 +14,13 @@ namespace steradian {
 /// Rays are canonicalised inside. `hits` and `result` have as many entries as there are rays.
 struct Kernels {
     void (*intersect)(const World&, const Ray* rays, Hit* hits, size_t count) noexcept;
+    /// 1 where anything is met, else 0.
     void (*occluded)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
     void (*next_hit)(const World&, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept;
     void (*intersect_coherent)(const World&, const Ray* rays, Hit* hits, size_t count) noexcept;
     void (*occluded_coherent)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+    /// Accel::Occlusion, where the world has cut-outs.
+    void (*occluded_or_cut_out)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 };
 
 extern const Kernels kScalarKernels;

@@ -12,10 +12,15 @@
 
 namespace steradian {
 namespace avx2 {
+// In cut_outs_avx2.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
 #include "accel/kernels/simd_avx2.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+
 #include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace avx2
@@ -28,8 +33,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx2Kernels = {avx2::intersect, avx2::occluded, avx2::next_hit, avx2::intersect_coherent,
-                              avx2::occluded_coherent};
+const Kernels kAvx2Kernels = {avx2::intersect,          avx2::occluded,          avx2::next_hit,
+                              avx2::intersect_coherent, avx2::occluded_coherent, avx2::occluded_or_cut_out};
 }
 
 #endif

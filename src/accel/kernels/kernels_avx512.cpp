@@ -15,10 +15,15 @@
 
 namespace steradian {
 namespace avx512 {
+// In cut_outs_avx512.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
 #include "accel/kernels/simd_avx512.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+
 #include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace avx512
@@ -31,8 +36,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx512Kernels = {avx512::intersect, avx512::occluded, avx512::next_hit, avx512::intersect_coherent,
-                                avx512::occluded_coherent};
+const Kernels kAvx512Kernels = {avx512::intersect,          avx512::occluded,          avx512::next_hit,
+                                avx512::intersect_coherent, avx512::occluded_coherent, avx512::occluded_or_cut_out};
 }
 
 #endif

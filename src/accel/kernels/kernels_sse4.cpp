@@ -12,10 +12,15 @@
 
 namespace steradian {
 namespace sse4 {
+// In cut_outs_sse4.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
 #include "accel/kernels/simd_sse4.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+
 #include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace sse4
@@ -28,8 +33,8 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kSse4Kernels = {sse4::intersect, sse4::occluded, sse4::next_hit, sse4::intersect_coherent,
-                              sse4::occluded_coherent};
+const Kernels kSse4Kernels = {sse4::intersect,          sse4::occluded,          sse4::next_hit,
+                              sse4::intersect_coherent, sse4::occluded_coherent, sse4::occluded_or_cut_out};
 }
 
 #endif

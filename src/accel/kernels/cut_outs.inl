@@ -1,0 +1,10 @@
+// Any hits where some primitives are cut-outs. Included after kernel.inl, in files of its own: one more user of what is in
+// there would change what compilers inline into the other kernels.
+
+void occluded_or_cut_out(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
+    if (count == 1) {
+        *result = occlusion(trace_one<Mode::opaque>(world, *rays, nullptr));
+        return;
+    }
+    trace<Mode::opaque>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
+}

@@ -1,0 +1,31 @@
+#include "accel/kernels/kernel_headers.h"
+
+#if defined(__x86_64__)
+
+// From here on functions are compiled for AVX-512.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,popcnt"))), \
+                             apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,popcnt")
+#endif
+
+namespace steradian {
+namespace avx512 {
+namespace {
+#include "accel/kernels/simd_avx512.inl"
+
+#include "accel/kernels/kernel.inl"
+}  // namespace
+#include "accel/kernels/cut_outs.inl"
+}  // namespace avx512
+}  // namespace steradian
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+#endif

@@ -1,0 +1,140 @@
+// Hierarchies as deep as the kernels are made for, on both levels at once, by hand: what the stacks must hold.
+#include <gtest/gtest.h>
+
+#include "accel/kernels/kernels.h"
+#include "scenes.h"
+
+namespace steradian::test {
+namespace {
+
+constexpr uint32_t kSiblings = kWidth - 1;
+
+/// A chain of kMaxNodeLevels nodes, each with seven leaves of one triangle and the rest of the chain, which a ray along x
+/// meets first. All triangles lie across the x axis, those of node k at x from far_end - 10 k down.
+struct Chain {
+    TriangleMesh mesh;
+    std::vector<WideNode> nodes{kMaxNodeLevels};
+    std::vector<TriangleBlock> blocks;
+
+    /// The innermost node ends in a leaf with another triangle, or in `last` with the given box.
+    explicit Chain(float far_end, uint32_t last = 0, Box last_box = {}) {
+        Box inside = last_box;
+        for (uint32_t k = kMaxNodeLevels; k-- > 0;) {
+            const bool innermost = k == kMaxNodeLevels - 1;
+            WideNode& node = nodes[k];
+            if (innermost && last == 0) last = add_triangle(far_end - 10 * static_cast<float>(k) - 8, inside);
+            set_child(node, kSiblings, inside, innermost ? last : ChildRef::node(k + 1));
+            for (uint32_t i = 0; i < kSiblings; ++i) {
+                Box own;
+                const uint32_t leaf =
+                    add_triangle(far_end - 10 * static_cast<float>(k) - static_cast<float>(i), own);
+                set_child(node, i, own, leaf);
+                inside.extend(own);
+            }
+            // From far to near in every octant: as they are.
+            for (uint32_t place = 0; place < kWidth; ++place) {
+                node.order[place] = 0;
+                for (uint32_t octant = 0; octant < 8; ++octant) node.order[place] |= place << (3 * octant);
+            }
+        }
+        bounds = inside;
+    }
+    LevelView view() const { return {nodes.data(), blocks.data(), nullptr}; }
+
+    Box bounds;
+
+private:
+    uint32_t add_triangle(float x, Box& own) {
+        const Vec3 corners[3] = {{x, -4, -4}, {x, 4, -4}, {x, 0, 4}};
+        const auto prim = static_cast<uint32_t>(mesh.indices.size() / 3);
+        mesh.add(corners[0], corners[1], corners[2]);
+        own = {};
+        TriangleBlock block;
+        for (uint32_t lane = 0; lane < kBlock; ++lane) {
+            block.prim[lane] = lane == 0 ? prim : kNoHit;
+            for (int which = 0; which < 3; ++which) {
+                own.extend(corners[which]);
+                for (int axis = 0; axis < 3; ++axis) block.vertex[which][axis][lane] = corners[which][axis];
+            }
+        }
+        blocks.push_back(block);
+        return ChildRef::leaf(ItemKind::block, static_cast<uint32_t>(blocks.size() - 1), 1);
+    }
+    static void set_child(WideNode& node, uint32_t i, const Box& box, uint32_t ref) {
+        for (int axis = 0; axis < 3; ++axis)
+            node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
+        node.child[i] = ref;
+    }
+};
+
+TEST(Deepest, StacksHoldBothLevels) {
+    const Affine placing = translation(-3000, 0, 0);
+    const Chain inner(1000);
+    const std::optional<PlacedGeometry> placed = place(1, placing, inner.bounds);
+    ASSERT_TRUE(placed);
+    const Chain outer(1000, ChildRef::leaf(ItemKind::instance, 0, 1), placed->world);
+
+    // Instance 0 is the outer chain's mesh in place, instance 1 the inner one's.
+    PlacedGeometry in_place;
+    in_place.world = outer.bounds;
+    const PlacedGeometry instances[] = {in_place, *placed};
+    const LevelView levels[] = {{}, inner.view()};
+    const ShapesView shapes[2] = {};
+    const TrianglePart part{0, 0};
+    const LeafEntry entry{1, 0, {}};
+    World world;
+    world.upper = outer.view();
+    world.upper.entries = &entry;
+    world.parts = &part, world.part_count = 1;
+    world.instances = instances, world.levels = levels, world.shapes = shapes;
+
+    TestScene scene("two chains");
+    scene.meshes = {outer.mesh, inner.mesh};
+    scene.instances = {{0, {}}, {1, placing}};
+    scene.finish(1);
+    const BruteForce brute(scene);
+
+    // From the near end, all of them meet everything; from the far end; and some that miss by little, with all boxes met.
+    Random random(2);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 96; ++i) {
+        const auto y = static_cast<float>(random.uniform(-1, 1)), z = static_cast<float>(random.uniform(-1, 1));
+        const float side = i < 64 ? -1.0f : 1.0f, miss = i % 32 < 16 ? 0.0f : 3.5f;
+        rays.push_back({{side * 5000, y - miss, z + miss}, 0, {-side, 1e-6f * y, 1e-6f * z}, kInfinity});
+    }
+    std::vector<Hit> expected;
+    size_t found = 0;
+    for (const Ray& ray : rays) expected.push_back(brute.first_hit(ray)), found += expected.back().found();
+    ASSERT_EQ(found, rays.size() / 2);
+    ASSERT_EQ(brute.all_hits(rays[0]).size(), 2 * (size_t(kSiblings) * kMaxNodeLevels) + 1);
+
+    for (const Isa isa : supported_isas()) {
+        const Kernels& kernels = **select_kernels(isa);
+        std::vector<Hit> hits(rays.size());
+        std::vector<uint8_t> occluded(rays.size());
+        for (const auto intersect : {kernels.intersect, kernels.intersect_coherent}) {
+            intersect(world, rays.data(), hits.data(), rays.size());
+            for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], expected[i])) << i;
+        }
+        for (const auto any : {kernels.occluded, kernels.occluded_coherent}) {
+            any(world, rays.data(), occluded.data(), rays.size());
+            for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i] != 0, expected[i].found()) << i;
+        }
+        for (size_t i = 0; i < rays.size(); ++i) {
+            Hit hit;
+            kernels.intersect(world, &rays[i], &hit, 1);
+            ASSERT_TRUE(same_bits(hit, expected[i])) << i;
+        }
+        // All hits in turn.
+        const std::vector<Hit> all = brute.all_hits(rays[0]);
+        Hit hit = all[0];
+        for (size_t k = 1; k <= all.size(); ++k) {
+            const Hit after = hit;
+            kernels.next_hit(world, rays.data(), &after, &hit, 1);
+            ASSERT_TRUE(same_bits(hit, k < all.size() ? all[k] : Hit{})) << k;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace steradian::test
