@@ -77,8 +77,8 @@ TEST(CutOuts, OcclusionIsWhatTheDefinitionSays) {
     for (const size_t n : seen) EXPECT_GT(n, 1000u);
 }
 
-/// Four sheets in a row in two instances of one geometry: opaque ones count wherever they are, beyond cut-outs and among
-/// hits at the same t.
+/// Four sheets in a row in two instances of one geometry: opaque ones count wherever they are, beyond cut-outs and
+/// among hits at the same t.
 TEST(CutOuts, OpaqueOnesBlockWhateverIsInFront) {
     TestScene scene("sheets");
     TriangleMesh mesh;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr uint32_t kSiblings = kWidth - 1;
 
-/// A chain of kMaxNodeLevels nodes, each with seven leaves of one triangle and the rest of the chain, which a ray along x
-/// meets first. All triangles lie across the x axis, those of node k at x from far_end - 10 k down.
+/// A chain of kMaxNodeLevels nodes, each with seven leaves of one triangle and the rest of the chain, which a ray along
+/// x meets first. All triangles lie across the x axis, those of node k at x from far_end - 10 k down.
 struct Chain {
     TriangleMesh mesh;
     std::vector<WideNode> nodes{kMaxNodeLevels};
@@ -26,8 +26,7 @@ struct Chain {
             set_child(node, kSiblings, inside, innermost ? last : ChildRef::node(k + 1));
             for (uint32_t i = 0; i < kSiblings; ++i) {
                 Box own;
-                const uint32_t leaf =
-                    add_triangle(far_end - 10 * static_cast<float>(k) - static_cast<float>(i), own);
+                const uint32_t leaf = add_triangle(far_end - 10 * static_cast<float>(k) - static_cast<float>(i), own);
                 set_child(node, i, own, leaf);
                 inside.extend(own);
             }
@@ -94,7 +93,8 @@ TEST(Deepest, StacksHoldBothLevels) {
     scene.finish(1);
     const BruteForce brute(scene);
 
-    // From the near end, all of them meet everything; from the far end; and some that miss by little, with all boxes met.
+    // From the near end, all of them meet everything; from the far end; and some that miss by little, with all boxes
+    // met.
     Random random(2);
     std::vector<Ray> rays;
     for (int i = 0; i < 96; ++i) {
