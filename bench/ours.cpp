@@ -68,7 +68,8 @@ public:
 
 const std::vector<OurSetting>& our_settings() {
     static const std::vector<OurSetting> settings = {{"sah", with_builder(BvhBuilder::sah)},
-                                                     {"median", with_builder(BvhBuilder::median)}};
+                                                     {"median", with_builder(BvhBuilder::median)},
+                                                     {"fast", with_builder(BvhBuilder::fast)}};
     return settings;
 }
 

@@ -45,7 +45,7 @@ inline constexpr double kMinFilterRadius = 0.01, kMaxFilterRadius = 32;  ///< pi
 inline constexpr uint32_t kMaxResolution = 1u << 20;                     ///< of one side
 inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< width × height
 
-enum class BvhBuilder : uint8_t { sah, median };
+enum class BvhBuilder : uint8_t { sah, median, fast };
 
 /// Which instructions the ray kernels use; all compute the same bits. `automatic` is the best that the machine has,
 /// unless the environment variable STERADIAN_ISA names another one.

@@ -117,7 +117,7 @@ Status build_levels(std::span<const Geometry> geometries, const std::vector<bool
     for (uint32_t i = 0; i < geometries.size(); ++i) {
         built.shapes.push_back(shapes_of(geometries[i]));
         if (upper[i]) continue;
-        std::vector<BuildPrimitive> primitives;
+        LargeArray<BuildPrimitive> primitives;
         if (Status status = append_primitives(geometries[i], i, 0, primitives); !status) return status;
         if (cancelled.poll()) return cancelled_error();
         const LevelPart part{0, kNoHit, i};
@@ -149,7 +149,7 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
     size_t count = 0;
     for (const GeometryInstance& i : instances)
         count += upper[i.geometry] ? primitive_count(geometries[i.geometry]) : 1;
-    std::vector<BuildPrimitive> primitives;
+    LargeArray<BuildPrimitive> primitives;
     primitives.reserve(count);
     std::vector<LevelPart> parts;
     for (uint32_t i = 0; i < instances.size(); ++i) {

@@ -59,6 +59,15 @@ private:
     std::vector<std::unique_ptr<BinaryNode[]>> chunks_;
 };
 
+/// What is to become a subtree: primitives [begin, end), under so many splits.
+struct Subtree {
+    size_t begin = 0, end = 0;
+    uint32_t depth = 0;
+};
+/// Divides by options.builder, which is sah or median, into `out`; see build_bvh, defined in bvh.cpp.
+void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
+            Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
+
 /// Gathers a binary tree into `out`; defined in gather.cpp.
 void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Bvh& out);
 

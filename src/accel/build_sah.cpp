@@ -14,14 +14,27 @@ uint32_t bins_for(size_t count) { return static_cast<uint32_t>(count < 8 * (kBin
 /// Ranges are binned in chunks of this size, whatever the number of workers.
 constexpr size_t kChunk = 32768;
 
+/// Only as many as are used are initialised: in small ranges that would be most of the work.
 struct Bins {
-    Box4 box[3][kBins];
-    uint32_t count[3][kBins] = {};
+    Float4 lo[3][kBins], hi[3][kBins];
+    uint32_t count[3][kBins];
 
+    explicit Bins(uint32_t bins = kBins) {
+        const Box4 nothing;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::fill_n(lo[axis], bins, nothing.lo), std::fill_n(hi[axis], bins, nothing.hi);
+            std::fill_n(count[axis], bins, 0u);
+        }
+    }
+    Box4 box(int axis, uint32_t bin) const { return {lo[axis][bin], hi[axis][bin]}; }
+    void extend(int axis, uint32_t bin, Float4 l, Float4 h) {
+        lo[axis][bin] = smaller(l, lo[axis][bin]);
+        hi[axis][bin] = larger(h, hi[axis][bin]);
+    }
     void extend(const Bins& other, uint32_t bins) {
-        for (size_t axis = 0; axis < 3; ++axis)
+        for (int axis = 0; axis < 3; ++axis)
             for (uint32_t bin = 0; bin < bins; ++bin) {
-                box[axis][bin].extend(other.box[axis][bin]);
+                extend(axis, bin, other.lo[axis][bin], other.hi[axis][bin]);
                 count[axis][bin] += other.count[axis][bin];
             }
     }
@@ -61,7 +74,7 @@ void count(std::span<const BuildPrimitive> primitives, const Binning& binning, B
         alignas(16) uint32_t bin[4];
         binning.bins(lo + hi, bin);
         for (int axis = 0; axis < 3; ++axis) {
-            bins.box[axis][bin[axis]].extend(lo, hi);
+            bins.extend(axis, bin[axis], lo, hi);
             ++bins.count[axis][bin[axis]];
         }
     }
@@ -112,7 +125,7 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
                                        ItemKind kind) {
     const Binning binning(bounds, primitives.size());
     const Area half_area_of(bounds);
-    Bins bins;
+    Bins bins(binning.count());
     count_all(primitives, binning, bins);
     std::optional<SahSplit> best;
     const uint32_t all = static_cast<uint32_t>(primitives.size());
@@ -122,13 +135,13 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
         Box4 side;
         uint32_t in_side = 0;
         for (uint32_t i = binning.count() - 1; i > 0; --i) {
-            side.extend(bins.box[axis][i]);
+            side.extend(bins.box(axis, i));
             in_side += bins.count[axis][i];
             right_cost[i] = in_side ? half_area_of(side) * leaf_cost(kind, in_side) : 0.0f;
         }
         side = Box4{}, in_side = 0;
         for (uint32_t i = 1; i < binning.count(); ++i) {
-            side.extend(bins.box[axis][i - 1]);
+            side.extend(bins.box(axis, i - 1));
             in_side += bins.count[axis][i - 1];
             if (in_side == 0 || in_side == all) continue;
             const float cost = half_area_of(side) * leaf_cost(kind, in_side) + right_cost[i];

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "accel/binary_tree.h"
+#include "accel/build_fast.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -16,17 +17,10 @@ constexpr size_t kMaxSahLeaf = 8;
 
 class BinaryBuilder {
 public:
-    BinaryBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled)
-        : primitives_(primitives), options_(options), cancelled_(cancelled) {}
+    BinaryBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled,
+                  BinaryPool& pool)
+        : primitives_(primitives), options_(options), cancelled_(cancelled), pool_(pool) {}
 
-    BinaryNode& run() {
-        BinaryPool::Source source(pool_);
-        BinaryNode& root = *source.next();
-        divide(root, 0, primitives_.size(), range_bounds(primitives_), 0, source);
-        return root;
-    }
-
-private:
     void divide(BinaryNode& out, size_t begin, size_t end, const RangeBounds& bounds, uint32_t depth,
                 BinaryPool::Source& source) {
         const std::span<BuildPrimitive> range = primitives_.subspan(begin, end - begin);
@@ -50,6 +44,7 @@ private:
         }
     }
 
+private:
     /// Nothing on the left: make a leaf.
     Halves split(std::span<BuildPrimitive> range, const RangeBounds& bounds, uint32_t depth) {
         const bool last = depth >= options_.max_depth || (range.size() >= kTaskGrain && cancelled_.poll());
@@ -74,17 +69,30 @@ private:
     std::span<BuildPrimitive> primitives_;
     const BvhOptions& options_;
     Cancellation& cancelled_;
-    BinaryPool pool_;
+    BinaryPool& pool_;
 };
 
 }  // namespace
 
+void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
+            Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out) {
+    const auto [begin, end, depth] = subtree;
+    BinaryBuilder(primitives, options, cancelled, pool)
+        .divide(out, begin, end, range_bounds(primitives.subspan(begin, end - begin)), depth, source);
+}
+
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled) {
     Bvh out;
     if (primitives.empty()) return out;
-    BinaryBuilder builder(primitives, options, cancelled);
-    BinaryNode& root = builder.run();
-    if (!cancelled.poll()) gather(root, primitives, out);
+    BinaryPool pool;
+    BinaryNode* root = nullptr;
+    if (options.builder == BvhBuilder::fast) root = build_fast(primitives, options, pool, cancelled);
+    if (!root) {
+        BinaryPool::Source source(pool);
+        root = source.next();
+        divide(primitives, {0, primitives.size(), 0}, options, cancelled, pool, source, *root);
+    }
+    if (!cancelled.poll()) gather(*root, primitives, out);
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "accel/binary_tree.h"
+#include "accel/child_order.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -192,7 +193,7 @@ private:
                 fill(child, places[i]);
             }
         });
-        finish(node, children.count);
+        set_child_order(node, children.count);
         out_.nodes[own] = node;
     }
 
@@ -218,7 +219,7 @@ private:
             set_box(node, children, range_bounds(primitives_.subspan(b, e - b)).box.box());
             node.child[children] = gather_items(b, e, kind, item + first, std::min(share, items - first), place);
         }
-        finish(node, children);
+        set_child_order(node, children);
         out_.nodes[own] = node;
         return ChildRef::node(own);
     }
@@ -235,27 +236,6 @@ private:
     static void set_box(WideNode& node, uint32_t i, const Box& box) {
         for (int axis = 0; axis < 3; ++axis)
             node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
-    }
-
-    /// The order of the children by their centres along the diagonal of each octant.
-    static void finish(WideNode& node, uint32_t children) {
-        float centre[3][kWidth];
-        for (int axis = 0; axis < 3; ++axis)
-            for (uint32_t i = 0; i < children; ++i) centre[axis][i] = node.plane[axis][0][i] + node.plane[axis][1][i];
-        std::fill_n(node.order, kWidth, 0u);
-        for (uint32_t octant = 0; octant < 8; ++octant) {
-            float key[kWidth];
-            for (uint32_t i = 0; i < children; ++i)
-                key[i] = (octant & 1 ? -centre[0][i] : centre[0][i]) + (octant & 2 ? -centre[1][i] : centre[1][i]) +
-                         (octant & 4 ? -centre[2][i] : centre[2][i]);
-            for (uint32_t i = 0; i < kWidth; ++i) {
-                // Its place: how many are farther; children that do not exist come first, where they do no harm.
-                uint32_t place = i < children ? kWidth - children : i - children;
-                for (uint32_t j = 0; j < children && i < children; ++j)
-                    place += key[j] > key[i] || (key[j] == key[i] && j < i);
-                node.order[place] |= i << (3 * octant);
-            }
-        }
     }
 
     std::span<const BuildPrimitive> primitives_;

@@ -31,7 +31,7 @@ Error bad_geometry(size_t geometry, const std::string& what) {
 struct Target {
     size_t geometry;
     uint32_t first_id;
-    std::vector<BuildPrimitive>& out;
+    LargeArray<BuildPrimitive>& out;
 };
 
 /// Appends box_of(i) for all i, or reports the first primitive for which that is nothing.
@@ -166,7 +166,7 @@ size_t primitive_count(const Geometry& geometry) {
 }
 
 Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
-                         std::vector<BuildPrimitive>& out) {
+                         LargeArray<BuildPrimitive>& out) {
     return std::visit([&](const auto& g) { return append(g, Target{geometry_index, first_id, out}); }, geometry);
 }
 

@@ -29,7 +29,7 @@ struct LevelPart {
 size_t primitive_count(const Geometry& geometry);
 /// Appends the box of every primitive, with ids from `first_id` on; or says what is wrong with it (bad_input).
 Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
-                         std::vector<BuildPrimitive>& out);
+                         LargeArray<BuildPrimitive>& out);
 
 /// `parts` are ascending and say whose the ids of blocks and shapes are; those of instances count from
 /// `first_instance`. Unfinished when cancelled. Reorders the primitives.

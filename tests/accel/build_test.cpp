@@ -14,7 +14,7 @@
 namespace steradian::test {
 namespace {
 
-constexpr BvhBuilder kBuilders[] = {BvhBuilder::sah, BvhBuilder::median};
+constexpr BvhBuilder kBuilders[] = {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast};
 
 TestScene scene_of(const std::string& name, TriangleMesh mesh) {
     TestScene scene(name);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "accel/kernels/kernels.h"
+#include "base/names.h"
 #include "scenes.h"
 #include "support/support.h"
 
@@ -23,15 +24,20 @@ std::vector<Variant> variants() {
     const std::vector<Isa> isas = supported_isas();
     for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa});
     size_t turn = 0;
-    for (const auto& [builder, max_depth] :
-         {std::pair{BvhBuilder::median, 64u}, {BvhBuilder::sah, 5u}, {BvhBuilder::median, 3u}, {BvhBuilder::sah, 1u}})
+    for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::fast, 64u},
+                                             {BvhBuilder::median, 64u},
+                                             {BvhBuilder::sah, 5u},
+                                             {BvhBuilder::median, 3u},
+                                             {BvhBuilder::sah, 1u},
+                                             {BvhBuilder::fast, 17u},
+                                             {BvhBuilder::fast, 2u}})
         all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
     return all;
 }
 
 std::string name_of(const Variant& v) {
-    return std::string(v.builder == BvhBuilder::sah ? "sah" : "median") + ", max depth " + std::to_string(v.max_depth) +
-           ", instruction set " + std::to_string(int(v.isa));
+    return std::string(name_of(v.builder)) + ", max depth " + std::to_string(v.max_depth) + ", instruction set " +
+           std::to_string(int(v.isa));
 }
 
 std::vector<Accel> build_all(const TestScene& scene) {

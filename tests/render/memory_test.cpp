@@ -42,6 +42,7 @@ void expect_hierarchy(const Scene& scene, BvhBuilder builder) {
 TEST(MemoryEstimate, TheHierarchyOfAMesh) {
     expect_hierarchy(grid(200), BvhBuilder::sah);
     expect_hierarchy(grid(200), BvhBuilder::median);
+    expect_hierarchy(grid(200), BvhBuilder::fast);
 }
 
 TEST(MemoryEstimate, TheSceneIsWhatItsArraysHold) {
