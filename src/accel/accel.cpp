@@ -14,8 +14,17 @@ namespace steradian {
 
 namespace {
 
+/// What refit() must find again.
+struct GeometrySize {
+    size_t kind, primitives;
+    bool operator==(const GeometrySize&) const = default;
+};
+GeometrySize size_of(const Geometry& geometry) { return {geometry.index(), primitive_count(geometry)}; }
+
 /// The levels and what they refer to.
 struct Built {
+    std::vector<GeometrySize> sizes;
+    std::vector<bool> on_upper_level;  ///< by geometry
     Level upper;
     std::vector<TrianglePart> parts;
     std::vector<PlacedGeometry> instances;
@@ -183,6 +192,12 @@ template <class Array>
 uint64_t bytes_of(const Array& v) {
     return v.capacity() * sizeof(v[0]);
 }
+double cost_of(const Built& built) {
+    std::vector<double> by_geometry, by_instance;
+    for (const Level& level : built.levels) by_geometry.push_back(expected_cost(level, {}));
+    for (const PlacedGeometry& placed : built.instances) by_instance.push_back(by_geometry[placed.geometry]);
+    return expected_cost(built.upper, by_instance);
+}
 AccelStatistics count(std::span<const Geometry> geometries, const Built& built) {
     AccelStatistics s;
     const auto add = [&](const Level& level) {
@@ -194,14 +209,60 @@ AccelStatistics count(std::span<const Geometry> geometries, const Built& built) 
     for (const Geometry& g : geometries) s.primitives += primitive_count(g);
     for (const Level& level : built.levels) add(level);
     add(built.upper);
-    s.bytes += bytes_of(built.levels) + bytes_of(built.views) + bytes_of(built.shapes) + bytes_of(built.parts) +
-               bytes_of(built.instances) + bytes_of(built.cut_outs);
+    s.cost = cost_of(built);
+    s.bytes += bytes_of(built.sizes) + built.on_upper_level.capacity() / 8 + bytes_of(built.levels) +
+               bytes_of(built.views) + bytes_of(built.shapes) + bytes_of(built.parts) + bytes_of(built.instances) +
+               bytes_of(built.cut_outs);
     return s;
+}
+
+Error other_scene(const std::string& what) {
+    return {ErrorCode::bad_input, what + " is not what the hierarchy was built over; build it anew", {}, {}, {}};
+}
+
+/// That there is the same of everything; not whether it is sound.
+Status check_same(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                  const Built& built) {
+    if (geometries.size() != built.sizes.size())
+        return other_scene("a number of " + std::to_string(geometries.size()) + " geometries");
+    if (instances.size() != built.instances.size())
+        return other_scene("a number of " + std::to_string(instances.size()) + " instances");
+    for (size_t i = 0; i < geometries.size(); ++i)
+        if (size_of(geometries[i]) != built.sizes[i])
+            return other_scene("geometry " + std::to_string(i) + " with " +
+                               std::to_string(primitive_count(geometries[i])) + " primitives or of its kind");
+    for (size_t i = 0; i < instances.size(); ++i) {
+        const uint32_t geometry = instances[i].geometry;
+        if (geometry != built.instances[i].geometry)
+            return other_scene("instance " + std::to_string(i) + " of geometry " + std::to_string(geometry));
+        if (built.on_upper_level[geometry] && !is_identity(instances[i].world_from_object))
+            return other_scene("instance " + std::to_string(i) + ", which had no transform, with one");
+    }
+    return Ok{};
+}
+
+/// All instances in their new places, once everything is checked.
+Result<std::vector<PlacedGeometry>> place_again(std::span<const Geometry> geometries,
+                                                std::span<const GeometryInstance> instances, const Built& built) {
+    std::vector<Box> bounds;
+    for (size_t i = 0; i < geometries.size(); ++i) {
+        const Result<Box> box = checked_bounds(geometries[i], i);
+        if (!box) return box.error();
+        bounds.push_back(built.on_upper_level[i] ? Box{} : *box);
+    }
+    std::vector<PlacedGeometry> placed;
+    placed.reserve(instances.size());
+    for (size_t i = 0; i < instances.size(); ++i) {
+        const Result<PlacedGeometry> one = place_instance(i, instances[i], bounds[instances[i].geometry]);
+        if (!one) return one.error();
+        placed.push_back(*one);
+    }
+    return placed;
 }
 
 }  // namespace
 
-Accel::Accel(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
+Accel::Accel(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
@@ -219,6 +280,8 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         data->kernels = *kernels;
         const std::vector<bool> upper = upper_geometries(geometries, instances);
         Built& built = data->built;
+        built.on_upper_level = upper;
+        for (const Geometry& geometry : geometries) built.sizes.push_back(size_of(geometry));
         if (Status status = build_levels(geometries, upper, options, cancelled, built); !status) return status.error();
         if (Status status = build_upper(geometries, instances, upper, options, cancelled, built); !status)
             return status.error();
@@ -231,6 +294,31 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         return Accel(std::move(data));
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::resources, "not enough memory for the hierarchy", {}, {}, {}};
+    }
+}
+
+Status Accel::refit(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances) {
+    const FloatMode mode;
+    try {
+        Built& built = data_->built;
+        if (Status status = check_same(geometries, instances, built); !status) return status;
+        Result<std::vector<PlacedGeometry>> placed = place_again(geometries, instances, built);
+        if (!placed) return placed.error();
+        std::vector<LevelPart> parts;
+        for (const TrianglePart& part : built.parts)
+            parts.push_back({part.first, part.instance, built.instances[part.instance].geometry});
+        // From here on nothing fails.
+        std::copy(placed->begin(), placed->end(), built.instances.begin());
+        for (uint32_t i = 0; i < geometries.size(); ++i) {
+            built.shapes[i] = shapes_of(geometries[i]);
+            const LevelPart whole{0, kNoHit, i};
+            refit_level(built.levels[i], geometries, {&whole, 1}, {});
+        }
+        refit_level(built.upper, geometries, parts, built.instances);
+        data_->statistics.cost = cost_of(built);
+        return Ok{};
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::resources, "not enough memory to refit the hierarchy", {}, {}, {}};
     }
 }
 

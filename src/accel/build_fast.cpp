@@ -84,7 +84,8 @@ private:
         treelets_.resize(firsts_.size() - 1);
         parallel_for(treelets_.size(), kTreeletChunk, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
-                const Box box = range_bounds(std::span(sorted_).subspan(firsts_[i], firsts_[i + 1] - firsts_[i])).box.box();
+                const Box box =
+                    range_bounds(std::span(sorted_).subspan(firsts_[i], firsts_[i + 1] - firsts_[i])).box.box();
                 treelets_[i] = {box, static_cast<uint32_t>(i), ItemKind::instance};
             }
         });
@@ -127,11 +128,11 @@ private:
     const BvhOptions& options_;
     BinaryPool& pool_;
     Cancellation& cancelled_;
-    LargeArray<BuildPrimitive> sorted_;    ///< along the curve
-    std::vector<uint32_t> firsts_;         ///< where treelets begin along the curve, and where the last one ends
-    std::vector<BuildPrimitive> treelets_; ///< ids along the curve
-    std::vector<uint32_t> places_;         ///< the same in their final order
-    std::vector<BinaryNode*> leaves_;      ///< of the tree over treelets
+    LargeArray<BuildPrimitive> sorted_;     ///< along the curve
+    std::vector<uint32_t> firsts_;          ///< where treelets begin along the curve, and where the last one ends
+    std::vector<BuildPrimitive> treelets_;  ///< ids along the curve
+    std::vector<uint32_t> places_;          ///< the same in their final order
+    std::vector<BinaryNode*> leaves_;       ///< of the tree over treelets
 };
 
 }  // namespace

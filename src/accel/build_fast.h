@@ -1,4 +1,5 @@
-// A builder for previews: the surface-area heuristic where it is cheap or matters most, a space-filling curve in between.
+// A builder for previews: the surface-area heuristic where it is cheap or matters most, a space-filling curve in
+// between.
 #pragma once
 
 #include <span>
@@ -9,10 +10,10 @@ namespace steradian {
 
 /// Sorts primitives along a Morton curve, cuts that into treelets of up to kTreelet primitives, which are subtrees of
 /// the radix tree over the codes (Karras 2012, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d
-/// Trees"), and divides by the surface-area heuristic the treelets among themselves, as boxes (after Garanzha, Pantaleoni
-/// & McAllister 2011, "Simpler and Faster HLBVH with Work Queues"), and each of them. Nothing is moved along all the
-/// levels in between. Same promises as build_bvh; options.builder is not looked at. Without a root, and with nothing
-/// reordered, when options.max_depth is too small for that; without a root when cancelled.
+/// Trees"), and divides by the surface-area heuristic the treelets among themselves, as boxes (after Garanzha,
+/// Pantaleoni & McAllister 2011, "Simpler and Faster HLBVH with Work Queues"), and each of them. Nothing is moved along
+/// all the levels in between. Same promises as build_bvh; options.builder is not looked at. Without a root, and with
+/// nothing reordered, when options.max_depth is too small for that; without a root when cancelled.
 BinaryNode* build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
                        Cancellation& cancelled);
 

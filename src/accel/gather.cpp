@@ -6,7 +6,7 @@
 #include <array>
 
 #include "accel/binary_tree.h"
-#include "accel/child_order.h"
+#include "accel/children.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -185,7 +185,7 @@ private:
         WideNode node = empty_node();
         each(root, children, [&](uint32_t i) {
             const BinaryNode& child = *children.node[i];
-            set_box(node, i, child.box.box());
+            set_child_box(node, i, child.box.box());
             if (child.is_leaf()) {
                 node.child[i] = fill_leaf(child, places[i]);
             } else {
@@ -216,7 +216,7 @@ private:
         uint32_t children = 0;
         for (uint32_t first = 0; first < items; first += share, ++children) {
             const uint32_t b = begin + first * size, e = std::min(end, b + share * size);
-            set_box(node, children, range_bounds(primitives_.subspan(b, e - b)).box.box());
+            set_child_box(node, children, range_bounds(primitives_.subspan(b, e - b)).box.box());
             node.child[children] = gather_items(b, e, kind, item + first, std::min(share, items - first), place);
         }
         set_child_order(node, children);
@@ -232,10 +232,6 @@ private:
         }
         std::fill_n(node.child, kWidth, 0u);
         return node;
-    }
-    static void set_box(WideNode& node, uint32_t i, const Box& box) {
-        for (int axis = 0; axis < 3; ++axis)
-            node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
     }
 
     std::span<const BuildPrimitive> primitives_;

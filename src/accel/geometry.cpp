@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <string>
 
 #include "accel/planar.h"
@@ -31,20 +32,25 @@ Error bad_geometry(size_t geometry, const std::string& what) {
 struct Target {
     size_t geometry;
     uint32_t first_id;
-    LargeArray<BuildPrimitive>& out;
+    LargeArray<BuildPrimitive>* out;  ///< nullptr: only checked
+    Box bounds;
 };
 
-/// Appends box_of(i) for all i, or reports the first primitive for which that is nothing.
+/// Appends box_of(i) for all i and extends the bounds by them, or reports the first primitive for which that is
+/// nothing.
 template <class BoxOf>
-Status append(const Target& target, size_t count, ItemKind kind, const char* name, BoxOf box_of) {
-    const size_t start = target.out.size();
-    target.out.resize(start + count);
+Status append(Target& target, size_t count, ItemKind kind, const char* name, BoxOf box_of) {
+    const size_t start = target.out ? target.out->size() : 0;
+    if (target.out) target.out->resize(start + count);
     std::atomic<size_t> first_bad{count};
+    std::mutex mutex;
     parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        Box bounds;
         for (size_t i = begin; i < end; ++i) {
             Box box;
             if (box_of(i, box) && within_bounds(box)) {
-                target.out[start + i] = {box, target.first_id + static_cast<uint32_t>(i), kind};
+                if (target.out) (*target.out)[start + i] = {box, target.first_id + static_cast<uint32_t>(i), kind};
+                bounds.extend(box);
                 continue;
             }
             size_t seen = first_bad;
@@ -52,6 +58,8 @@ Status append(const Target& target, size_t count, ItemKind kind, const char* nam
             }
             return;
         }
+        const std::lock_guard lock(mutex);
+        target.bounds.extend(bounds);
     });
     if (first_bad < count)
         return bad_geometry(target.geometry,
@@ -64,7 +72,7 @@ Status append(const Target& target, size_t count, ItemKind kind, const char* nam
 // min_of and max_of may pass over a NaN, so a box alone does not show one.
 bool all_finite(Vec3 a, Vec3 b, Vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-Status append(const TriangleGeometry& mesh, const Target& target) {
+Status append(const TriangleGeometry& mesh, Target& target) {
     if (mesh.indices.size() % 3 != 0)
         return bad_geometry(target.geometry,
                             std::to_string(mesh.indices.size()) + " indices, expected a multiple of 3");
@@ -81,7 +89,7 @@ Status append(const TriangleGeometry& mesh, const Target& target) {
     });
 }
 
-Status append(std::span<const SphereGeometry> spheres, const Target& target) {
+Status append(std::span<const SphereGeometry> spheres, Target& target) {
     return append(target, spheres.size(), ItemKind::shape, "sphere", [&](size_t i, Box& box) {
         const SphereGeometry& s = spheres[i];
         if (!is_finite(s.center) || !(s.radius >= 0) || !is_finite(s.radius)) return false;
@@ -90,7 +98,7 @@ Status append(std::span<const SphereGeometry> spheres, const Target& target) {
     });
 }
 
-Status append(std::span<const RectangleGeometry> rectangles, const Target& target) {
+Status append(std::span<const RectangleGeometry> rectangles, Target& target) {
     return append(target, rectangles.size(), ItemKind::shape, "rectangle", [&](size_t i, Box& box) {
         const RectangleGeometry& r = rectangles[i];
         if (!all_finite(r.center, r.half_u, r.half_v)) return false;
@@ -99,13 +107,36 @@ Status append(std::span<const RectangleGeometry> rectangles, const Target& targe
     });
 }
 
-Status append(std::span<const DiskGeometry> disks, const Target& target) {
+Status append(std::span<const DiskGeometry> disks, Target& target) {
     return append(target, disks.size(), ItemKind::shape, "disk", [&](size_t i, Box& box) {
         const DiskGeometry& d = disks[i];
         if (!all_finite(d.center, d.axis_u, d.axis_v)) return false;
         box = disk_bounds(d);
         return true;
     });
+}
+
+/// The part to which an id belongs.
+const LevelPart& part_of(std::span<const LevelPart> parts, uint32_t id) {
+    return *(std::upper_bound(parts.begin(), parts.end(), id,
+                              [](uint32_t i, const LevelPart& part) { return i < part.first; }) -
+             1);
+}
+
+/// Blocks of these ids, without their vertices.
+LargeArray<TriangleBlock> blocks_of(std::span<const uint32_t> ids) {
+    LargeArray<TriangleBlock> blocks(ids.size() / kBlock);
+    parallel_for(blocks.size(), kGrain / kBlock, [&](size_t begin, size_t end) {
+        for (size_t b = begin; b < end; ++b) std::copy_n(&ids[b * kBlock], kBlock, blocks[b].prim);
+    });
+    return blocks;
+}
+
+}  // namespace
+
+LevelView Level::view() const {
+    if (nodes.empty()) return {};
+    return {nodes.data(), blocks.empty() ? &kNoBlocks : blocks.data(), entries.data()};
 }
 
 Box shape_bounds(const Geometry& geometry, uint32_t prim) {
@@ -119,39 +150,21 @@ Box shape_bounds(const Geometry& geometry, uint32_t prim) {
     return std::visit(Bounds{prim}, geometry);
 }
 
-/// The part to which an id belongs.
-const LevelPart& part_of(std::span<const LevelPart> parts, uint32_t id) {
-    return *(std::upper_bound(parts.begin(), parts.end(), id,
-                              [](uint32_t i, const LevelPart& part) { return i < part.first; }) -
-             1);
-}
-
-LargeArray<TriangleBlock> pack(std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                               std::span<const uint32_t> ids) {
-    LargeArray<TriangleBlock> blocks(ids.size() / kBlock);
+void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> geometries,
+                    std::span<const LevelPart> parts) {
     parallel_for(blocks.size(), kGrain / kBlock, [&](size_t begin, size_t end) {
-        for (size_t b = begin; b < end; ++b)
+        for (TriangleBlock& block : blocks.subspan(begin, end - begin))
             for (size_t lane = 0; lane < kBlock; ++lane) {
-                const uint32_t prim = ids[b * kBlock + lane];
-                const uint32_t source = prim == kNoHit ? ids[b * kBlock] : prim;
+                const uint32_t source = block.prim[lane] == kNoHit ? block.prim[0] : block.prim[lane];
                 const LevelPart& part = part_of(parts, source);
                 const auto& mesh = std::get<TriangleGeometry>(geometries[part.geometry]);
                 const uint32_t* corners = &mesh.indices[3 * size_t(source - part.first)];
-                blocks[b].prim[lane] = prim;
                 for (size_t which = 0; which < 3; ++which) {
                     const Vec3 p = mesh.positions[corners[which]];
-                    for (int axis = 0; axis < 3; ++axis) blocks[b].vertex[which][axis][lane] = p[axis];
+                    for (int axis = 0; axis < 3; ++axis) block.vertex[which][axis][lane] = p[axis];
                 }
             }
     });
-    return blocks;
-}
-
-}  // namespace
-
-LevelView Level::view() const {
-    if (nodes.empty()) return {};
-    return {nodes.data(), blocks.empty() ? &kNoBlocks : blocks.data(), entries.data()};
 }
 
 size_t primitive_count(const Geometry& geometry) {
@@ -167,7 +180,15 @@ size_t primitive_count(const Geometry& geometry) {
 
 Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
                          LargeArray<BuildPrimitive>& out) {
-    return std::visit([&](const auto& g) { return append(g, Target{geometry_index, first_id, out}); }, geometry);
+    Target target{geometry_index, first_id, &out, {}};
+    return std::visit([&](const auto& g) { return append(g, target); }, geometry);
+}
+
+Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index) {
+    Target target{geometry_index, 0, nullptr, {}};
+    if (Status status = std::visit([&](const auto& g) { return append(g, target); }, geometry); !status)
+        return status.error();
+    return target.bounds;
 }
 
 Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
@@ -176,7 +197,8 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
     Bvh bvh = build_bvh(primitives, options, cancelled);
     Level level;
     level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
-    level.blocks = pack(geometries, parts, bvh.blocks);
+    level.blocks = blocks_of(bvh.blocks);
+    place_vertices(level.blocks, geometries, parts);
     level.entries.reserve(bvh.entries.size());
     for (const uint32_t id : bvh.entries) {
         if (id >= first_instance) {

@@ -30,12 +30,28 @@ size_t primitive_count(const Geometry& geometry);
 /// Appends the box of every primitive, with ids from `first_id` on; or says what is wrong with it (bad_input).
 Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,
                          LargeArray<BuildPrimitive>& out);
+/// The bounds of all primitives, when they are what append_primitives would take.
+Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index);
+/// Of one shape; nothing for triangles.
+Box shape_bounds(const Geometry& geometry, uint32_t prim);
+/// Fills in the vertices of blocks whose prims are set.
+void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> geometries,
+                    std::span<const LevelPart> parts);
 
 /// `parts` are ascending and say whose the ids of blocks and shapes are; those of instances count from
 /// `first_instance`. Unfinished when cancelled. Reorders the primitives.
 Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   Cancellation& cancelled);
+
+/// What build_level made, for the same parts with other vertices, shapes and places of instances: boxes and orders are
+/// computed anew, from the leaves up, by all workers of the caller's arena.
+void refit_level(Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
+                 std::span<const PlacedGeometry> instances);
+
+/// The visits of nodes and tests of blocks, shapes and instances that a ray is expected to need which meets the bounds,
+/// with the costs of the hierarchies that the instances of the upper level lead to.
+double expected_cost(const Level& level, std::span<const double> instance_costs);
 
 ShapesView shapes_of(const Geometry& geometry);
 

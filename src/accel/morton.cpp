@@ -11,8 +11,8 @@ namespace steradian {
 namespace {
 
 constexpr uint32_t kAxisBits = 21, kDigitBits = 8, kDigits = 1u << kDigitBits;
-/// Keys are counted and moved in chunks: of at least this many keys, and at most kMaxChunks of them, whatever the number
-/// of workers.
+/// Keys are counted and moved in chunks: of at least this many keys, and at most kMaxChunks of them, whatever the
+/// number of workers.
 constexpr size_t kMinChunk = 16384, kMaxChunks = 128;
 
 /// Two zeros before every bit of a number of 21 bits.

@@ -1,12 +1,28 @@
-// In which order a node's children are visited.
+// What a node knows of its children: their boxes, and in which order they are visited.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
+#include "accel/box.h"
 #include "accel/wide_node.h"
 
 namespace steradian {
+
+inline void set_child_box(WideNode& node, uint32_t i, const Box& box) {
+    for (int axis = 0; axis < 3; ++axis)
+        node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
+}
+inline Box child_box(const WideNode& node, uint32_t i) {
+    const auto& p = node.plane;
+    return {{p[0][0][i], p[1][0][i], p[2][0][i]}, {p[0][1][i], p[1][1][i], p[2][1][i]}};
+}
+/// The first so many exist; nothing leads to the root.
+inline uint32_t child_count(const WideNode& node) {
+    uint32_t count = 0;
+    while (count < kWidth && node.child[count] != ChildRef::node(0)) ++count;
+    return count;
+}
 
 /// Orders the first `children` of a node by their centres along the diagonal of each octant. All octants are computed
 /// side by side.
