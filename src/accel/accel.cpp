@@ -111,6 +111,16 @@ std::vector<bool> upper_geometries(std::span<const Geometry> geometries, std::sp
     return upper;
 }
 
+/// What a build has to do: every primitive is in one hierarchy, and so is every instance that is not on the upper level
+/// itself. (Those of nothing have no part in it; the last step is larger then.)
+uint64_t work_of(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                 const std::vector<bool>& upper) {
+    uint64_t items = 0;
+    for (const Geometry& g : geometries) items += primitive_count(g);
+    for (const GeometryInstance& i : instances) items += !upper[i.geometry];
+    return std::max<uint64_t>(items, 1) * kBuildWork;
+}
+
 ItemKind kind_of(const Geometry& geometry) {
     return std::holds_alternative<TriangleGeometry>(geometry) ? ItemKind::block : ItemKind::shape;
 }
@@ -128,6 +138,7 @@ Status build_levels(std::span<const Geometry> geometries, const std::vector<bool
         if (upper[i]) continue;
         LargeArray<BuildPrimitive> primitives;
         if (Status status = append_primitives(geometries[i], i, 0, primitives); !status) return status;
+        cancelled.advance(primitives.size() * kReadWork);
         if (cancelled.poll()) return cancelled_error();
         const LevelPart part{0, kNoHit, i};
         built.levels[i] = build_level(primitives, geometries, {&part, 1}, kNoHit,
@@ -167,6 +178,7 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         const auto first = static_cast<uint32_t>(primitives.size());
         if (Status status = append_primitives(geometries[geometry], geometry, first, primitives); !status)
             return status;
+        cancelled.advance((primitives.size() - first) * kReadWork);
         if (primitives.size() == first) continue;
         parts.push_back({first, i, geometry});
         built.parts.push_back({first, i});
@@ -184,6 +196,7 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         built.instances.push_back(*placed);
         if (!bounds.empty()) primitives.emplace_back(placed->world, first_instance + i, ItemKind::instance);
     }
+    cancelled.advance((primitives.size() - first_instance) * kReadWork);
     built.upper = build_level(primitives, geometries, parts, first_instance, bvh_options(options, mostly), cancelled);
     return cancelled.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
@@ -275,10 +288,10 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         if (Status status = check(geometries, instances, options); !status) return status.error();
         const Result<const Kernels*> kernels = select_kernels(options.isa);
         if (!kernels) return kernels.error();
-        Cancellation cancelled(options.cancelled);
         auto data = std::make_unique<Data>();
         data->kernels = *kernels;
         const std::vector<bool> upper = upper_geometries(geometries, instances);
+        Cancellation cancelled(options.cancelled, options.progress, work_of(geometries, instances, upper));
         Built& built = data->built;
         built.on_upper_level = upper;
         for (const Geometry& geometry : geometries) built.sizes.push_back(size_of(geometry));
@@ -291,6 +304,7 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         data->world = data->built.world();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
         data->statistics.build_seconds = took.count();
+        if (options.progress) options.progress(1);
         return Accel(std::move(data));
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::resources, "not enough memory for the hierarchy", {}, {}, {}};

@@ -55,6 +55,9 @@ struct AccelOptions {
     uint32_t max_depth = 64;  ///< 1 … 64 levels below a root; a leaf there takes whatever is left
     Isa isa = Isa::automatic;
     std::function<bool()> cancelled;  ///< asked now and then during the build, by one thread at a time
+    /// Told now and then how much of the work is done: more each time, above 0 and up to 1, which only a build that
+    /// succeeds reaches. By one thread at a time, never while `cancelled` is asked; never changes the result.
+    std::function<void(double fraction)> progress;
 };
 
 struct AccelStatistics {
@@ -84,7 +87,7 @@ public:
     /// cancelled. Uses the workers of the caller's arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
-    /// The same geometries and instances with other vertices, parameters and transforms: several times faster than a
+    /// The same geometries and instances with other vertices, parameters and transforms: much faster than a
     /// new build, and the answers are exactly those of a new build; but the further things move against each other, the
     /// more boxes overlap, and the slower rays become (statistics().cost). The spans replace those given to build.
     ///

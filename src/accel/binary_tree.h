@@ -68,7 +68,7 @@ struct Subtree {
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
             Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
 
-/// Gathers a binary tree into `out`; defined in gather.cpp.
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Bvh& out);
+/// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp.
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Cancellation& cancelled, Bvh& out);
 
 }  // namespace steradian

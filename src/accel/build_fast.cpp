@@ -14,6 +14,7 @@ namespace {
 constexpr size_t kTreelet = 64;
 /// Levels that a leaf of the tree over treelets may need below itself: it holds at most eight of them.
 constexpr uint32_t kLevelsBelow = static_cast<uint32_t>(std::bit_width(8 * kTreelet / kBlock));
+constexpr uint64_t kSortWork = 2;  ///< of kDivideWork
 /// Keys are cut, and treelets divided, in chunks of this size, whatever the number of workers.
 constexpr size_t kKeyChunk = 16384, kTreeletChunk = 64;
 
@@ -47,11 +48,13 @@ public:
         const uint32_t needed = static_cast<uint32_t>(std::bit_width(primitives_.size())) + kLevelsBelow;
         if (needed > options_.max_depth) return nullptr;
         sort();
+        cancelled_.advance(primitives_.size() * kSortWork);
         if (cancelled_.poll()) return nullptr;
         find_treelets();
         BvhOptions options = options_;
         options.builder = BvhBuilder::sah, options.mostly = ItemKind::instance;
         options.max_depth -= kLevelsBelow;
+        options.work = 0;
         BinaryPool::Source source(pool_);
         BinaryNode& root = *source.next();
         divide(treelets_, {0, treelets_.size(), 0}, options, cancelled_, pool_, source, root);
@@ -114,6 +117,7 @@ private:
     void divide_treelets() {
         BvhOptions options = options_;
         options.builder = BvhBuilder::sah;
+        options.work -= kSortWork;
         parallel_for(leaves_.size(), kTreeletChunk, [&](size_t begin, size_t end) {
             if (cancelled_.poll()) return;
             BinaryPool::Source source(pool_);

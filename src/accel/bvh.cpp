@@ -28,21 +28,32 @@ public:
         out.begin = static_cast<uint32_t>(begin), out.end = static_cast<uint32_t>(end);
         out.depth = depth;
         const Halves halves = split(range, bounds, depth);
-        if (halves.left == 0) return;
+        if (halves.left == 0) {
+            if (range.size() >= kTaskGrain) done(range.size());
+            return;
+        }
         depth += halves.by_kind ? 0 : 1;
         const size_t middle = begin + halves.left;
         for (BinaryNode*& child : out.child) child = source.next();
         if (range.size() >= kTaskGrain) {
-            parallel_invoke([&] { divide(*out.child[0], begin, middle, halves.bounds[0], depth, source); },
-                            [&] {
-                                BinaryPool::Source own(pool_);
-                                divide(*out.child[1], middle, end, halves.bounds[1], depth, own);
-                            });
+            parallel_invoke(
+                [&] {
+                    divide(*out.child[0], begin, middle, halves.bounds[0], depth, source);
+                    if (middle - begin < kTaskGrain) done(middle - begin);
+                },
+                [&] {
+                    BinaryPool::Source own(pool_);
+                    divide(*out.child[1], middle, end, halves.bounds[1], depth, own);
+                    if (end - middle < kTaskGrain) done(end - middle);
+                });
         } else {
             divide(*out.child[0], begin, middle, halves.bounds[0], depth, source);
             divide(*out.child[1], middle, end, halves.bounds[1], depth, source);
         }
     }
+
+    /// With ranges of which none was large enough to say so itself.
+    void done(size_t primitives) { cancelled_.advance(primitives * options_.work); }
 
 private:
     /// Nothing on the left: make a leaf.
@@ -77,8 +88,9 @@ private:
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
             Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out) {
     const auto [begin, end, depth] = subtree;
-    BinaryBuilder(primitives, options, cancelled, pool)
-        .divide(out, begin, end, range_bounds(primitives.subspan(begin, end - begin)), depth, source);
+    BinaryBuilder builder(primitives, options, cancelled, pool);
+    builder.divide(out, begin, end, range_bounds(primitives.subspan(begin, end - begin)), depth, source);
+    if (end - begin < kTaskGrain) builder.done(end - begin);
 }
 
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled) {
@@ -92,7 +104,7 @@ Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, C
         root = source.next();
         divide(primitives, {0, primitives.size(), 0}, options, cancelled, pool, source, *root);
     }
-    if (!cancelled.poll()) gather(*root, primitives, out);
+    if (!cancelled.poll()) gather(*root, primitives, cancelled, out);
     return out;
 }
 

@@ -34,30 +34,52 @@ struct Bvh {
 
 inline constexpr uint32_t kBlock = 4;
 
-/// Asks the caller's function from one thread at a time and remembers a yes. A thread that finds another one asking, or
-/// that is asked again from within the function, goes on with what is known.
+/// What a build says to its caller, and hears: how much is done, and that it is to stop, which is remembered. The
+/// caller's functions are called from one thread at a time; a thread that finds another one asking, or that is asked
+/// again from within such a function, goes on with what is known.
 class Cancellation {
 public:
-    explicit Cancellation(const std::function<bool()>& asked) : asked_(asked) {}
+    Cancellation(const std::function<bool()>& asked, const std::function<void(double)>& told, uint64_t work)
+        : asked_(asked), told_(told), work_(work) {}
     bool poll() {
         if (stop_.load(std::memory_order_relaxed)) return true;
-        if (!asked_) return false;
+        if (!asked_ && !told_) return false;
         // Not a mutex: one thread may get here twice, when the function waits for tasks that poll.
         if (asking_.exchange(true, std::memory_order_acquire)) return stop_.load(std::memory_order_relaxed);
-        if (asked_()) stop_.store(true, std::memory_order_relaxed);
+        if (asked_ && asked_()) stop_.store(true, std::memory_order_relaxed);
+        if (!stop_.load(std::memory_order_relaxed)) tell();
         asking_.store(false, std::memory_order_release);
         return stop_.load(std::memory_order_relaxed);
     }
+    /// Of the work that was announced.
+    void advance(uint64_t work) { done_.fetch_add(work, std::memory_order_relaxed); }
 
 private:
+    /// 1 is for the caller, when nothing can go wrong any more.
+    void tell() {
+        const double fraction = static_cast<double>(done_) / static_cast<double>(work_);
+        if (!told_ || fraction <= last_ || fraction >= 1) return;
+        last_ = fraction;
+        told_(fraction);
+    }
+
     const std::function<bool()>& asked_;
+    const std::function<void(double)>& told_;
+    const uint64_t work_;
+    std::atomic<uint64_t> done_{0};
+    double last_ = 0;  ///< of whoever is asking
     std::atomic<bool> asking_{false}, stop_{false};
 };
+
+/// What a primitive's way through the stages takes, in tenths of the whole, roughly as measured.
+inline constexpr uint64_t kReadWork = 1, kDivideWork = 6, kGatherWork = 2, kPackWork = 1;
+inline constexpr uint64_t kBuildWork = kReadWork + kDivideWork + kGatherWork + kPackWork;
 
 struct BvhOptions {
     BvhBuilder builder = BvhBuilder::sah;
     uint32_t max_depth = kMaxBvhDepth;
     ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
+    uint64_t work = kDivideWork;        ///< to report for a primitive once it is in a leaf
 };
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the

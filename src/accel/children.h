@@ -10,8 +10,7 @@
 namespace steradian {
 
 inline void set_child_box(WideNode& node, uint32_t i, const Box& box) {
-    for (int axis = 0; axis < 3; ++axis)
-        node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
+    for (int axis = 0; axis < 3; ++axis) node.plane[axis][0][i] = box.lo[axis], node.plane[axis][1][i] = box.hi[axis];
 }
 inline Box child_box(const WideNode& node, uint32_t i) {
     const auto& p = node.plane;
@@ -37,7 +36,8 @@ inline void set_child_order(WideNode& node, uint32_t children) {
     }
     // The place of each: how many are farther; children that do not exist come first, where they do no harm.
     uint32_t place[kWidth][kOctants];
-    for (uint32_t i = 0; i < kWidth; ++i) std::fill_n(place[i], kOctants, i < children ? kWidth - children : i - children);
+    for (uint32_t i = 0; i < kWidth; ++i)
+        std::fill_n(place[i], kOctants, i < children ? kWidth - children : i - children);
     for (uint32_t i = 0; i < children; ++i)
         for (uint32_t j = i + 1; j < children; ++j)
             for (uint32_t octant = 0; octant < kOctants; ++octant) {
@@ -46,8 +46,7 @@ inline void set_child_order(WideNode& node, uint32_t children) {
             }
     std::fill_n(node.order, kWidth, 0u);
     for (uint32_t i = 0; i < kWidth; ++i)
-        for (uint32_t octant = 0; octant < kOctants; ++octant)
-            node.order[place[i][octant]] |= i << (3 * octant);
+        for (uint32_t octant = 0; octant < kOctants; ++octant) node.order[place[i][octant]] |= i << (3 * octant);
 }
 
 }  // namespace steradian

@@ -196,9 +196,11 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
                   Cancellation& cancelled) {
     Bvh bvh = build_bvh(primitives, options, cancelled);
     Level level;
+    if (cancelled.poll()) return level;
     level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
     level.blocks = blocks_of(bvh.blocks);
     place_vertices(level.blocks, geometries, parts);
+    cancelled.advance(primitives.size() * kPackWork);
     level.entries.reserve(bvh.entries.size());
     for (const uint32_t id : bvh.entries) {
         if (id >= first_instance) {

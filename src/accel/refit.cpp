@@ -78,8 +78,7 @@ void refit_level(Level& level, std::span<const Geometry> geometries, std::span<c
                  std::span<const PlacedGeometry> instances) {
     if (level.nodes.empty()) return;
     place_vertices(level.blocks, geometries, parts);
-    level.bounds =
-        Refitter(level, geometries, parts, instances).refit(0, static_cast<uint32_t>(level.nodes.size()));
+    level.bounds = Refitter(level, geometries, parts, instances).refit(0, static_cast<uint32_t>(level.nodes.size()));
 }
 
 /// In chunks that do not depend on the workers, added in order.

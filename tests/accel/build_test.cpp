@@ -8,6 +8,7 @@
 #include "accel/bvh.h"
 #include "accel/wide_node.h"
 #include "base/parallel.h"
+#include "math/transform.h"
 #include "scenes.h"
 #include "support/support.h"
 
@@ -159,39 +160,6 @@ TEST(Build, Cancelled) {
     }
 }
 
-/// Wherever a build is when it is told to stop, it says so; at the first question that is answered by a yes, it stops.
-TEST(Build, CancelledAtEveryPoint) {
-    TestScene scene("both levels");
-    TriangleMesh mesh;
-    for (int i = 0; i < 20'000; ++i) {
-        const auto x = static_cast<float>(i);
-        mesh.add({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0});
-    }
-    scene.meshes = {mesh, mesh, icosphere(1)};
-    std::vector<SphereGeometry> spheres;
-    for (int i = 0; i < 5'000; ++i) spheres.push_back({{static_cast<float>(i), 2, 0}, 0.5f});
-    scene.spheres.push_back(std::move(spheres));
-    scene.instances = {{0, {}}, {1, translation(0, 5, 0)}, {1, translation(0, 9, 0)}, {3, {}}};
-    for (int i = 0; i < 5'000; ++i) scene.instances.push_back({2, translation(i, -3, 0)});
-    for (const BvhBuilder builder : kBuilders)
-        with_threads(1, [&] {
-            AccelOptions options;
-            options.builder = builder;
-            int asked = 0, yes_at = -1;
-            options.cancelled = [&] { return asked++ == yes_at; };
-            ASSERT_TRUE(Accel::build(scene.geometries(), scene.instances, options));
-            const int total = asked;
-            EXPECT_GT(total, 20);
-            for (yes_at = 0; yes_at < total; ++yes_at) {
-                asked = 0;
-                const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-                ASSERT_FALSE(accel) << yes_at;
-                EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
-                EXPECT_EQ(asked, yes_at + 1);
-            }
-        });
-}
-
 /// A function that waits for tasks, one of which polls, on the thread that is asking already.
 TEST(Build, CancellationMayBeAskedWhileItAsks) {
     int asked = 0, inner = 0;
@@ -200,7 +168,8 @@ TEST(Build, CancellationMayBeAskedWhileItAsks) {
         inner += self->poll();
         return asked++ == 1;
     };
-    Cancellation cancellation(function);
+    const std::function<void(double)> nobody;
+    Cancellation cancellation(function, nobody, 1);
     self = &cancellation;
     EXPECT_FALSE(cancellation.poll());
     EXPECT_EQ(asked, 1);
@@ -208,6 +177,77 @@ TEST(Build, CancellationMayBeAskedWhileItAsks) {
     EXPECT_TRUE(cancellation.poll());
     EXPECT_EQ(asked, 2);
     EXPECT_EQ(inner, 0);
+}
+
+/// Meshes and shapes in place, and instances, so that all stages have something to do.
+TestScene some_of_everything() {
+    TestScene scene = std::move(abuse(30'000)[4]);
+    scene.meshes.push_back(icosphere(4));
+    Random random(3);
+    scene.spheres.emplace_back();
+    for (int i = 0; i < 9'000; ++i) scene.spheres[0].push_back({random.in_cube(100), 1});
+    scene.instances.push_back({2, {}});
+    for (int i = 0; i < 40; ++i) scene.instances.push_back({1, translation(3.0 * i, 5, 0)});
+    return scene;
+}
+
+TEST(Build, CancelledAtEveryQuestion) {
+    const TestScene scene = some_of_everything();
+    const auto build = [&](BvhBuilder builder, int after, int& asked) {
+        AccelOptions options;
+        options.builder = builder;
+        options.cancelled = [&] { return asked++ >= after; };
+        options.progress = [&](double) { EXPECT_LE(asked, after) << "told something after it was stopped"; };
+        return Accel::build(scene.geometries(), scene.instances, options);
+    };
+    for (const BvhBuilder builder : kBuilders) {
+        int questions = 0;
+        ASSERT_TRUE(build(builder, 1'000'000, questions));
+        EXPECT_GT(questions, 20);
+        // On one thread the same questions are asked each time.
+        with_threads(1, [&] {
+            int all = 0;
+            ASSERT_TRUE(build(builder, 1'000'000, all));
+            for (int after = 0; after < all; ++after) {
+                int asked = 0;
+                const Result<Accel> accel = build(builder, after, asked);
+                ASSERT_FALSE(accel) << after << " of " << all;
+                EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
+                EXPECT_EQ(asked, after + 1) << "asked again after a yes";
+            }
+        });
+        for (const int after : {0, 1, 2, 5, 10, 20}) {
+            int asked = 0;
+            EXPECT_FALSE(build(builder, after, asked)) << after;
+        }
+    }
+}
+
+TEST(Build, SaysHowFarItIs) {
+    const ThreadLimit limit(5);
+    const TestScene scene = some_of_everything();
+    for (const BvhBuilder builder : kBuilders)
+        for (const uint32_t threads : {1u, 5u})
+            with_threads(threads, [&] {
+                std::vector<double> told;
+                std::atomic<int> inside{0};
+                AccelOptions options;
+                options.builder = builder;
+                options.progress = [&](double fraction) {
+                    EXPECT_EQ(inside++, 0) << "told by two threads at once";
+                    told.push_back(fraction);
+                    --inside;
+                };
+                ASSERT_TRUE(Accel::build(scene.geometries(), scene.instances, options));
+                ASSERT_GE(told.size(), 8u);
+                EXPECT_GT(told.front(), 0);
+                for (size_t i = 1; i < told.size(); ++i) EXPECT_GT(told[i], told[i - 1]);
+                EXPECT_EQ(told.back(), 1);
+                // All the work was announced, and what was announced is done: the last step before the end is small.
+                EXPECT_GT(told[told.size() - 2], 0.85);
+                if (threads > 1) return;
+                for (size_t i = 1; i < told.size(); ++i) EXPECT_LT(told[i] - told[i - 1], 0.5);
+            });
 }
 
 TEST(Build, CountsItsBytes) {

@@ -47,9 +47,8 @@ void expect_answers(const Accel& accel, const std::vector<Ray>& rays, const std:
         accel.intersect(rays, hits, kind);
         accel.occluded(rays, occluded, kind);
         for (size_t i = 0; i < rays.size(); ++i) {
-            ASSERT_TRUE(same_bits(hits[i], expected[i]))
-                << what << "\nray " << describe(rays[i]) << "\nexpected " << describe(expected[i]) << "\ngot "
-                << describe(hits[i]);
+            ASSERT_TRUE(same_bits(hits[i], expected[i])) << what << "\nray " << describe(rays[i]) << "\nexpected "
+                                                         << describe(expected[i]) << "\ngot " << describe(hits[i]);
             ASSERT_EQ(occluded[i] != 0, expected[i].found()) << what << " " << describe(rays[i]);
         }
     }
