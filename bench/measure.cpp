@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "builds.h"
 #include "ours.h"
+#include "trees.h"
 #include "trials.h"
 
 namespace steradian::bench {
@@ -163,6 +164,8 @@ std::optional<Error> measure_mesh(const BenchMesh& mesh, const Options& options,
         Course course{mesh, options, *ours, scenes, report};
         measure_rays(course);
     }
+    if (options.has_part("trees"))
+        if (std::optional<Error> error = measure_trees(mesh, options, report)) return error;
     if (options.has_part("build")) return measure_builds(mesh, options, report.builds);
     return {};
 }

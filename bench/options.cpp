@@ -85,7 +85,7 @@ const std::vector<Option>& table() {
          }},
         {"--rays", "NAMES", "only these ray sets", names(&Options::rays, [] { return ray_set_names(); })},
         {"--ours", "NAMES", "trace with these settings of ours (the first listed)", names(&Options::ours, our_names)},
-        {"--parts", "NAMES", "only these parts: rays, threads, build",
+        {"--parts", "NAMES", "only these parts: rays, threads, trees, build",
          names(&Options::parts, [] { return part_names(); })},
         {"--size", "PIXELS", "side of the picture whose rays are recorded (512)",
          number<uint32_t>(&Options::size, 8, 8192)},
@@ -143,7 +143,7 @@ bool Options::has_part(const std::string& name) const {
 }
 
 const std::vector<std::string>& part_names() {
-    static const std::vector<std::string> parts = {"rays", "threads", "build"};
+    static const std::vector<std::string> parts = {"rays", "threads", "trees", "build"};
     return parts;
 }
 

@@ -23,7 +23,7 @@ struct Options {
     bool has_part(const std::string& name) const;
 };
 
-/// rays, threads, build.
+/// rays, threads, trees, build.
 const std::vector<std::string>& part_names();
 
 /// The usage text for --help.

@@ -69,7 +69,8 @@ public:
 const std::vector<OurSetting>& our_settings() {
     static const std::vector<OurSetting> settings = {{"sah", with_builder(BvhBuilder::sah)},
                                                      {"median", with_builder(BvhBuilder::median)},
-                                                     {"fast", with_builder(BvhBuilder::fast)}};
+                                                     {"fast", with_builder(BvhBuilder::fast)},
+                                                     {"high-quality", with_builder(BvhBuilder::high_quality)}};
     return settings;
 }
 

@@ -75,6 +75,7 @@ private:
     static void write(Json& json, const ThreadRow& row);
     static void write(Json& json, const TriedRow& row);
     static void write(Json& json, const BuildRow& row);
+    static void write(Json& json, const TreeRow& row);
 };
 
 void Json::write(Json& json, const RayRow& row) {
@@ -120,6 +121,20 @@ void Json::write(Json& json, const BuildRow& row) {
     json.field("peak", row.peak);
 }
 
+void Json::write(Json& json, const TreeRow& row) {
+    json.field("mesh", row.mesh);
+    json.field("rays", row.rays);
+    json.field("tree", row.tree);
+    json.field("count", uint64_t(row.count));
+    json.field("seconds", row.seconds);
+    json.field("first_seconds", row.first);
+    json.field("node_visits", row.node_visits);
+    json.field("block_visits", row.block_visits);
+    json.field("nodes", row.nodes);
+    json.field("references", row.references);
+    json.field("differ", uint64_t(row.differ));
+}
+
 std::string processor() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
@@ -146,6 +161,7 @@ std::string to_json(const Report& report) {
         json.rows("rays", report.rays);
         json.rows("threads", report.threads);
         json.rows("builds", report.builds);
+        json.rows("trees", report.trees);
         json.rows("tried", report.tried);
     });
     return json.text() + "\n";

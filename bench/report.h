@@ -52,12 +52,23 @@ struct BuildRow {
     int64_t peak = 0;     ///< most that was held during the build
 };
 
+/// A tree under one and the same kernel of ours, on one thread.
+struct TreeRow {
+    std::string mesh, rays, tree;
+    size_t count = 0;
+    Spread seconds, first;                     ///< of it and of our first tree, from the same race
+    double node_visits = 0, block_visits = 0;  ///< per ray, for a ray by itself
+    double nodes = 0, references = 0;          ///< per triangle
+    size_t differ = 0;                         ///< rays answered otherwise than by way of our first tree
+};
+
 struct Report {
     std::string machine, date, command;
     std::vector<RayRow> rays;
     std::vector<ThreadRow> threads;
     std::vector<TriedRow> tried;
     std::vector<BuildRow> builds;
+    std::vector<TreeRow> trees;
 };
 
 Report new_report(const std::vector<std::string>& command);

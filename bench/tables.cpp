@@ -61,6 +61,19 @@ void print_builds(const std::vector<BuildRow>& rows) {
                    double(r.counted) / double(r.triangles), double(r.peak - r.counted) / double(r.counted));
 }
 
+void print_trees(const std::vector<TreeRow>& rows) {
+    fmt::print(
+        "\nTrees under one and the same kernel of ours, one thread; ÷ is against the first tree from the same race; "
+        "visits are a ray's, counted for one by itself; nodes and references are per triangle.\n\n"
+        "| mesh | rays | tree | M/s | ÷ | ± | node visits | block visits | nodes | references | differ | of "
+        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const TreeRow& r : rows)
+        fmt::print("| {} | {} | {} | {:.2f} | **{:.2f}** | {} | {:.1f} | {:.1f} | {:.3f} | {:.2f} | {} | {} |\n",
+                   r.mesh, r.rays, r.tree, mega_per_second(r.count, r.seconds.median),
+                   r.first.median / r.seconds.median, spread(r.seconds), r.node_visits, r.block_visits, r.nodes,
+                   r.references, r.differ, r.count);
+}
+
 void print_tried(const std::vector<TriedRow>& rows) {
     fmt::print(
         "\nEvery setting of Embree in a short trial, one thread; ours ÷ it from the same trial, best repetitions.\n\n"
@@ -77,6 +90,7 @@ void print_tables(const Report& report) {
     if (!report.rays.empty()) print_rays(report.rays);
     if (!report.threads.empty()) print_threads(report.threads);
     if (!report.builds.empty()) print_builds(report.builds);
+    if (!report.trees.empty()) print_trees(report.trees);
     if (!report.tried.empty()) print_tried(report.tried);
 }
 

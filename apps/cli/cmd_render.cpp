@@ -381,7 +381,8 @@ void add_render(CLI::App& app, Action& action) {
         ->default_str(std::to_string(o->execution.tile_size))
         ->group("Execution");
     add_choice(c, "--bvh", o->bvh, names_of<BvhBuilder>(),
-               "Builder of the hierarchy, sah, median or fast (for previews); never changes the picture")
+               "Builder of the hierarchy: sah, median, fast (for previews) or high-quality (slow to build, fast to "
+               "trace); never changes the picture")
         ->default_str(o->bvh)
         ->group("Execution");
     add_choice(c, "--isa", o->isa, names_of<Isa>(),

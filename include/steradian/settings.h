@@ -45,7 +45,10 @@ inline constexpr double kMinFilterRadius = 0.01, kMaxFilterRadius = 32;  ///< pi
 inline constexpr uint32_t kMaxResolution = 1u << 20;                     ///< of one side
 inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< width × height
 
-enum class BvhBuilder : uint8_t { sah, median, fast };
+/// `fast` takes about two thirds of the time of `sah` to build. `high_quality` takes about six times as long, and about
+/// twice the memory meanwhile; its hierarchy is faster to trace, the more so the more the boxes of the primitives
+/// overlap.
+enum class BvhBuilder : uint8_t { sah, median, fast, high_quality };
 
 /// Which instructions the ray kernels use; all compute the same bits. `automatic` is the best that the machine has,
 /// unless the environment variable STERADIAN_ISA names another one.

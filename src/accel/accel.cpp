@@ -126,7 +126,7 @@ ItemKind kind_of(const Geometry& geometry) {
 }
 
 BvhOptions bvh_options(const AccelOptions& options, ItemKind mostly) {
-    return {options.builder, options.max_depth, mostly};
+    return {options.builder, options.max_depth, mostly, false};
 }
 
 /// The hierarchies of the geometries that are not on the upper level; that these are sound is checked as well.
@@ -197,7 +197,9 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         if (!bounds.empty()) primitives.emplace_back(placed->world, first_instance + i, ItemKind::instance);
     }
     cancelled.advance((primitives.size() - first_instance) * kReadWork);
-    built.upper = build_level(primitives, geometries, parts, first_instance, bvh_options(options, mostly), cancelled);
+    BvhOptions upper_options = bvh_options(options, mostly);
+    upper_options.split_boxes = true;
+    built.upper = build_level(primitives, geometries, parts, first_instance, upper_options, cancelled);
     return cancelled.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 

@@ -89,20 +89,6 @@ void count_all(std::span<const BuildPrimitive> primitives, const Binning& binnin
     for (const Bins& part : parts) bins.extend(part, kBins);
 }
 
-/// Half the surface of boxes, in units of the range's largest extent: neither over- nor underflows where it matters.
-class Area {
-public:
-    explicit Area(const RangeBounds& bounds) {
-        const Box box = bounds.box.box();
-        const float extent = max_component(box.hi - box.lo), scale = 1 / extent;
-        scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
-    }
-    float operator()(const Box4& box) const { return half_area((box.hi - box.lo) * scale_); }
-
-private:
-    Float4 scale_;
-};
-
 }  // namespace
 
 RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {

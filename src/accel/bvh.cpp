@@ -1,10 +1,13 @@
 #include "accel/bvh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 
 #include "accel/binary_tree.h"
 #include "accel/build_fast.h"
+#include "accel/reinsert.h"
+#include "accel/split_spatial.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -14,6 +17,10 @@ namespace {
 constexpr size_t kTaskGrain = 4096;
 /// The heuristic makes no larger leaves, however little splitting promises: overlapping boxes do not stay alone.
 constexpr size_t kMaxSahLeaf = 8;
+/// Boxes are split where they overlap by more than this share of the surface of all (as in Stich et al. 2009).
+constexpr float kLeastOverlap = 1e-5f;
+/// Splits of boxes add at most one for this many primitives.
+constexpr size_t kPrimitivesPerCut = 2;
 
 class BinaryBuilder {
 public:
@@ -21,43 +28,66 @@ public:
                   BinaryPool& pool)
         : primitives_(primitives), options_(options), cancelled_(cancelled), pool_(pool) {}
 
-    void divide(BinaryNode& out, size_t begin, size_t end, const RangeBounds& bounds, uint32_t depth,
+    /// Primitives [begin, end); up to room_end there is room for what splits in space add.
+    void run(BinaryNode& out, size_t begin, size_t end, size_t room_end, uint32_t depth, BinaryPool::Source& source) {
+        whole_ = range_bounds(primitives_.subspan(begin, end - begin));
+        divide(out, begin, end, room_end, whole_, depth, source);
+        if (end - begin < kTaskGrain) done(end - begin);
+    }
+    /// What has been reported, of options.work for every primitive.
+    uint64_t reported() const { return reported_; }
+
+private:
+    void divide(BinaryNode& out, size_t begin, size_t end, size_t room_end, const RangeBounds& bounds, uint32_t depth,
                 BinaryPool::Source& source) {
         const std::span<BuildPrimitive> range = primitives_.subspan(begin, end - begin);
         out.box = bounds.box;
         out.begin = static_cast<uint32_t>(begin), out.end = static_cast<uint32_t>(end);
         out.depth = depth;
-        const Halves halves = split(range, bounds, depth);
+        const Halves halves = split(range, primitives_.subspan(begin, room_end - begin), bounds, depth);
         if (halves.left == 0) {
             if (range.size() >= kTaskGrain) done(range.size());
             return;
         }
         depth += halves.by_kind ? 0 : 1;
-        const size_t middle = begin + halves.left;
+        const size_t middle = begin + halves.left, last = end + halves.added;
+        // Each side gets room by its size.
+        const auto gap = static_cast<size_t>(uint64_t(room_end - last) * halves.left / (last - begin));
+        move_up(middle, last, gap);
+        const size_t right = middle + gap, right_end = last + gap;
         for (BinaryNode*& child : out.child) child = source.next();
         if (range.size() >= kTaskGrain) {
             parallel_invoke(
                 [&] {
-                    divide(*out.child[0], begin, middle, halves.bounds[0], depth, source);
+                    divide(*out.child[0], begin, middle, right, halves.bounds[0], depth, source);
                     if (middle - begin < kTaskGrain) done(middle - begin);
                 },
                 [&] {
                     BinaryPool::Source own(pool_);
-                    divide(*out.child[1], middle, end, halves.bounds[1], depth, own);
-                    if (end - middle < kTaskGrain) done(end - middle);
+                    divide(*out.child[1], right, right_end, room_end, halves.bounds[1], depth, own);
+                    if (right_end - right < kTaskGrain) done(right_end - right);
                 });
         } else {
-            divide(*out.child[0], begin, middle, halves.bounds[0], depth, source);
-            divide(*out.child[1], middle, end, halves.bounds[1], depth, source);
+            divide(*out.child[0], begin, middle, right, halves.bounds[0], depth, source);
+            divide(*out.child[1], right, right_end, room_end, halves.bounds[1], depth, source);
         }
     }
 
     /// With ranges of which none was large enough to say so itself.
-    void done(size_t primitives) { cancelled_.advance(primitives * options_.work); }
+    void done(size_t primitives) {
+        cancelled_.advance(primitives * options_.work);
+        reported_.fetch_add(primitives * options_.work, std::memory_order_relaxed);
+    }
 
-private:
-    /// Nothing on the left: make a leaf.
-    Halves split(std::span<BuildPrimitive> range, const RangeBounds& bounds, uint32_t depth) {
+    /// The order does not matter, so what has to move is no more than the gap.
+    void move_up(size_t begin, size_t end, size_t gap) {
+        const size_t moved = std::min(gap, end - begin);
+        std::copy_n(primitives_.begin() + ptrdiff_t(begin), moved, primitives_.begin() + ptrdiff_t(end + gap - moved));
+    }
+
+    /// `range` is what there is in `room`. Nothing on the left: make a leaf.
+    Halves split(std::span<BuildPrimitive> range, std::span<BuildPrimitive> room, const RangeBounds& bounds,
+                 uint32_t depth) {
         const bool last = depth >= options_.max_depth || (range.size() >= kTaskGrain && cancelled_.poll());
         const bool few = range.size() <= kMaxSahLeaf;
         ItemKind kind = options_.mostly;
@@ -74,29 +104,57 @@ private:
         if (depth + levels >= options_.max_depth) return split_median(range, bounds);
         const std::optional<SahSplit> best = find_sah_split(range, bounds, kind);
         if (few && (!best || leaf_cost(kind, range.size()) <= 1 + best->cost)) return {};
-        return best ? apply_sah_split(range, bounds, *best) : split_median(range, bounds);
+        const Halves halves = best ? apply_sah_split(range, bounds, *best) : split_median(range, bounds);
+        const size_t added = room.size() - range.size();
+        const float area = Area(whole_)(bounds.box);
+        if (added == 0 || overlap(halves, bounds) * area <= kLeastOverlap * Area(whole_)(whole_.box)) return halves;
+        const std::optional<SpatialSplit> cut = find_spatial_split(range, bounds, kind, added);
+        return cut && (!best || cut->cost < best->cost) ? apply_spatial_split(room, range.size(), *cut) : halves;
     }
 
     std::span<BuildPrimitive> primitives_;
     const BvhOptions& options_;
     Cancellation& cancelled_;
     BinaryPool& pool_;
+    RangeBounds whole_;
+    std::atomic<uint64_t> reported_{0};
 };
+
+void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled,
+                        BinaryPool& pool, Bvh& out) {
+    const size_t count = primitives.size(), most = size_t(ChildRef::kMaxItems) - 1;
+    const size_t added = options.split_boxes ? std::min(count / kPrimitivesPerCut, most - count) : 0;
+    std::vector<BuildPrimitive> work(count + added);
+    std::copy(primitives.begin(), primitives.end(), work.begin());
+    // Reinsertion takes about two thirds of the time.
+    BvhOptions dividing = options;
+    dividing.work = options.work / 3;
+    BinaryBuilder builder(work, dividing, cancelled, pool);
+    BinaryPool::Source source(pool);
+    BinaryNode& root = *source.next();
+    builder.run(root, 0, count, work.size(), 0, source);
+    if (cancelled.poll()) return;
+    const uint64_t all = count * options.work;
+    reinsert(root, work, options.max_depth, cancelled, all - std::min(all, builder.reported()));
+    if (!cancelled.poll()) gather(root, work, cancelled, out);
+}
 
 }  // namespace
 
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
             Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out) {
-    const auto [begin, end, depth] = subtree;
     BinaryBuilder builder(primitives, options, cancelled, pool);
-    builder.divide(out, begin, end, range_bounds(primitives.subspan(begin, end - begin)), depth, source);
-    if (end - begin < kTaskGrain) builder.done(end - begin);
+    builder.run(out, subtree.begin, subtree.end, subtree.end, subtree.depth, source);
 }
 
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled) {
     Bvh out;
     if (primitives.empty()) return out;
     BinaryPool pool;
+    if (options.builder == BvhBuilder::high_quality) {
+        build_high_quality(primitives, options, cancelled, pool, out);
+        return out;
+    }
     BinaryNode* root = nullptr;
     if (options.builder == BvhBuilder::fast) root = build_fast(primitives, options, pool, cancelled);
     if (!root) {

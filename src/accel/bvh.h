@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "accel/split.h"
@@ -39,8 +40,9 @@ inline constexpr uint32_t kBlock = 4;
 /// again from within such a function, goes on with what is known.
 class Cancellation {
 public:
-    Cancellation(const std::function<bool()>& asked, const std::function<void(double)>& told, uint64_t work)
-        : asked_(asked), told_(told), work_(work) {}
+    /// `work` is what will be announced in all; without functions nobody asks and nobody is told.
+    explicit Cancellation(std::function<bool()> asked = {}, std::function<void(double)> told = {}, uint64_t work = 1)
+        : asked_(std::move(asked)), told_(std::move(told)), work_(work) {}
     bool poll() {
         if (stop_.load(std::memory_order_relaxed)) return true;
         if (!asked_ && !told_) return false;
@@ -63,8 +65,8 @@ private:
         told_(fraction);
     }
 
-    const std::function<bool()>& asked_;
-    const std::function<void(double)>& told_;
+    const std::function<bool()> asked_;
+    const std::function<void(double)> told_;
     const uint64_t work_;
     std::atomic<uint64_t> done_{0};
     double last_ = 0;  ///< of whoever is asking
@@ -80,13 +82,15 @@ struct BvhOptions {
     uint32_t max_depth = kMaxBvhDepth;
     ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
     uint64_t work = kDivideWork;        ///< to report for a primitive once it is in a leaf
+    bool split_boxes = false;  ///< BvhBuilder::high_quality may; not where rays are transformed, see SpatialSplit
 };
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the
 /// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. A leaf holds one kind.
 /// Uses all workers of the caller's arena; the result does not depend on their number. Check `cancelled.poll()`
 /// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. Fewer than ChildRef::kMaxItems
-/// boxes, all of them finite; reorders them.
+/// boxes, all of them finite; reorders them. With split boxes a primitive may be in several leaves, and there are at
+/// most half as many again.
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled);
 
 }  // namespace steradian

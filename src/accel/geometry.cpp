@@ -195,12 +195,18 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   Cancellation& cancelled) {
     Bvh bvh = build_bvh(primitives, options, cancelled);
+    if (cancelled.poll()) return {};
+    Level level = fill_level(std::move(bvh), geometries, parts, first_instance);
+    cancelled.advance(primitives.size() * kPackWork);
+    return level;
+}
+
+Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
+                 uint32_t first_instance) {
     Level level;
-    if (cancelled.poll()) return level;
     level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
     level.blocks = blocks_of(bvh.blocks);
     place_vertices(level.blocks, geometries, parts);
-    cancelled.advance(primitives.size() * kPackWork);
     level.entries.reserve(bvh.entries.size());
     for (const uint32_t id : bvh.entries) {
         if (id >= first_instance) {

@@ -53,6 +53,10 @@ void refit_level(Level& level, std::span<const Geometry> geometries, std::span<c
 /// with the costs of the hierarchies that the instances of the upper level lead to.
 double expected_cost(const Level& level, std::span<const double> instance_costs);
 
+/// The rest of build_level: what the leaves of a hierarchy hold. An id may be in several of them.
+Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
+                 uint32_t first_instance);
+
 ShapesView shapes_of(const Geometry& geometry);
 
 }  // namespace steradian

@@ -14,7 +14,7 @@ Halves split_median(std::span<BuildPrimitive> primitives, const RangeBounds& bou
                          const float ca = a.centroid(axis), cb = b.centroid(axis);
                          return ca < cb || (ca == cb && a.id < b.id);
                      });
-    return {half, {range_bounds(primitives.first(half)), range_bounds(primitives.subspan(half))}, false};
+    return {half, {range_bounds(primitives.first(half)), range_bounds(primitives.subspan(half))}, 0, false};
 }
 
 std::optional<ItemKind> only_kind(std::span<const BuildPrimitive> primitives) {
@@ -29,7 +29,7 @@ Halves split_by_kind(std::span<BuildPrimitive> primitives) {
     const auto middle = std::partition(primitives.begin(), primitives.end(),
                                        [kind](const BuildPrimitive& p) { return p.kind == kind; });
     const auto left = static_cast<size_t>(middle - primitives.begin());
-    return {left, {range_bounds(primitives.first(left)), range_bounds(primitives.subspan(left))}, true};
+    return {left, {range_bounds(primitives.first(left)), range_bounds(primitives.subspan(left))}, 0, true};
 }
 
 }  // namespace steradian

@@ -61,6 +61,20 @@ struct RangeBounds {
 };
 RangeBounds range_bounds(std::span<const BuildPrimitive> primitives);
 
+/// Half the surface of boxes, in units of the range's largest extent: neither over- nor underflows where it matters.
+class Area {
+public:
+    explicit Area(const RangeBounds& bounds) {
+        const Box box = bounds.box.box();
+        const float extent = max_component(box.hi - box.lo), scale = 1 / extent;
+        scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
+    }
+    float operator()(const Box4& box) const { return half_area((box.hi - box.lo) * scale_); }
+
+private:
+    Float4 scale_;
+};
+
 /// What a leaf with `count` primitives of a kind costs, in visits of a node. An instance is a transform and a hierarchy
 /// of its own.
 inline float leaf_cost(ItemKind kind, size_t count) {
@@ -72,6 +86,7 @@ inline float leaf_cost(ItemKind kind, size_t count) {
 struct Halves {
     size_t left = 0;
     RangeBounds bounds[2];
+    size_t added = 0;      ///< how many more there are than before
     bool by_kind = false;  ///< not by place
 };
 

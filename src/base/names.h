@@ -19,7 +19,7 @@ namespace detail {
 inline constexpr std::array<std::string_view, 1> kIntegratorNames{"direct"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
-inline constexpr std::array<std::string_view, 3> kBuilderNames{"sah", "median", "fast"};
+inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
 inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "sse4", "avx2", "avx512", "neon"};
 }  // namespace detail
 

@@ -15,7 +15,7 @@
 namespace steradian::test {
 namespace {
 
-constexpr BvhBuilder kBuilders[] = {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast};
+constexpr BvhBuilder kBuilders[] = {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality};
 
 TestScene scene_of(const std::string& name, TriangleMesh mesh) {
     TestScene scene(name);
@@ -145,19 +145,21 @@ TEST(Build, SameForAnyNumberOfThreads) {
 
 TEST(Build, Cancelled) {
     TestScene scene = std::move(abuse(50'000)[4]);
-    for (const int after : {0, 1, 3}) {
-        std::atomic<int> asked{0}, inside{0};
-        AccelOptions options;
-        options.cancelled = [&] {
-            EXPECT_EQ(inside++, 0) << "asked by two threads at once";
-            std::this_thread::yield();
-            --inside;
-            return asked++ >= after;
-        };
-        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-        ASSERT_FALSE(accel);
-        EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
-    }
+    for (const BvhBuilder builder : kBuilders)
+        for (const int after : {0, 1, 3}) {
+            std::atomic<int> asked{0}, inside{0};
+            AccelOptions options;
+            options.builder = builder;
+            options.cancelled = [&] {
+                EXPECT_EQ(inside++, 0) << "asked by two threads at once";
+                std::this_thread::yield();
+                --inside;
+                return asked++ >= after;
+            };
+            const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+            ASSERT_FALSE(accel);
+            EXPECT_EQ(accel.error().code, ErrorCode::render_failed);
+        }
 }
 
 /// A function that waits for tasks, one of which polls, on the thread that is asking already.
@@ -168,8 +170,7 @@ TEST(Build, CancellationMayBeAskedWhileItAsks) {
         inner += self->poll();
         return asked++ == 1;
     };
-    const std::function<void(double)> nobody;
-    Cancellation cancellation(function, nobody, 1);
+    Cancellation cancellation(function);
     self = &cancellation;
     EXPECT_FALSE(cancellation.poll());
     EXPECT_EQ(asked, 1);

@@ -18,17 +18,21 @@ struct Variant {
     Isa isa;
 };
 
-/// Every kernel that the machine has on the default hierarchy, and other hierarchies with the kernels in turn.
+/// Every kernel that the machine has on the default hierarchy and on the one with split boxes, and other hierarchies
+/// with the kernels in turn.
 std::vector<Variant> variants() {
     std::vector<Variant> all;
     const std::vector<Isa> isas = supported_isas();
-    for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa});
+    for (const Isa isa : isas)
+        for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality}) all.push_back({builder, 64, isa});
     size_t turn = 0;
     for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::fast, 64u},
                                              {BvhBuilder::median, 64u},
                                              {BvhBuilder::sah, 5u},
+                                             {BvhBuilder::high_quality, 5u},
                                              {BvhBuilder::median, 3u},
                                              {BvhBuilder::sah, 1u},
+                                             {BvhBuilder::high_quality, 1u},
                                              {BvhBuilder::fast, 17u},
                                              {BvhBuilder::fast, 2u}})
         all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
@@ -36,8 +40,8 @@ std::vector<Variant> variants() {
 }
 
 std::string name_of(const Variant& v) {
-    return std::string(name_of(v.builder)) + ", max depth " + std::to_string(v.max_depth) + ", instruction set " +
-           std::to_string(int(v.isa));
+    return std::string(steradian::name_of(v.builder)) + ", max depth " + std::to_string(v.max_depth) +
+           ", instruction set " + std::to_string(int(v.isa));
 }
 
 std::vector<Accel> build_all(const TestScene& scene) {

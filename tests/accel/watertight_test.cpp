@@ -72,15 +72,21 @@ TEST(Watertight, NoRayFromInsideGetsThrough) {
     for (size_t c = 0; c < all.size(); ++c) {
         const Geometry geometry = all[c].mesh.geometry();
         const GeometryInstance instance;
-        const Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1});
-        ASSERT_TRUE(accel);
+        std::vector<Accel> built;
+        for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality}) {
+            AccelOptions options;
+            options.builder = builder;
+            Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
+            ASSERT_TRUE(accel);
+            built.push_back(std::move(*accel));
+        }
         Random random(500 + c);
         std::vector<Ray> rays(1000);
         std::vector<Hit> hits(rays.size());
         size_t escaped = 0;
         for (size_t done = 0; done < each; done += rays.size()) {
             for (Ray& ray : rays) ray = aimed_ray(all[c], random);
-            accel->intersect(rays, hits);
+            built[done / rays.size() % built.size()].intersect(rays, hits);
             for (size_t i = 0; i < rays.size(); ++i) {
                 if (hits[i].found() || length(Vec3d(rays[i].d)) == 0) continue;
                 if (++escaped <= 3) ADD_FAILURE() << all[c].name << ": escaped " << describe(rays[i]);

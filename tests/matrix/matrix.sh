@@ -35,12 +35,12 @@ isas=$({ STERADIAN_ISA=? "${program[@]}" render "$root/tests/matrix/one_of_every
 
 if [ "$full" = yes ]; then
     combinations=()
-    for threads in 1 2 7; do for tile in 5 16 64; do for bvh in sah median fast; do
+    for threads in 1 2 7; do for tile in 5 16 64; do for bvh in sah median fast high-quality; do
         combinations+=("$threads $tile $bvh auto")
     done; done; done
     for isa in $isas; do combinations+=("2 16 sah $isa"); done
 else
-    combinations=('1 16 sah auto' '2 5 median auto' '7 5 sah scalar' '7 16 median auto' '2 16 fast auto')
+    combinations=('1 16 sah auto' '2 5 median auto' '7 5 sah scalar' '7 16 fast auto' '2 16 high-quality auto')
     for isa in $isas; do combinations+=("1 64 median $isa"); done
 fi
 

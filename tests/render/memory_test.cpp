@@ -43,6 +43,7 @@ TEST(MemoryEstimate, TheHierarchyOfAMesh) {
     expect_hierarchy(grid(200), BvhBuilder::sah);
     expect_hierarchy(grid(200), BvhBuilder::median);
     expect_hierarchy(grid(200), BvhBuilder::fast);
+    expect_hierarchy(grid(200), BvhBuilder::high_quality);
 }
 
 TEST(MemoryEstimate, TheSceneIsWhatItsArraysHold) {

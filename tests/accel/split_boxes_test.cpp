@@ -1,0 +1,169 @@
+// Hierarchies in which the boxes of triangles are split, on rays that would be lost if the parts did not hold every t
+// that a hit may have by definition.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "accel/bvh.h"
+#include "accel/geometry.h"
+#include "accel/kernels/kernels.h"
+#include "scenes.h"
+#include "support/support.h"
+
+namespace steradian::test {
+namespace {
+
+/// A ground of two huge triangles that does not lie along the axes, slivers across each other in all directions, and
+/// small triangles in between that make it worth while to split them.
+TestScene overlapping(uint64_t seed) {
+    TestScene scene("overlapping");
+    TriangleMesh mesh;
+    Random random(seed);
+    const Vec3 a{-9, -1.37f, -8}, b{9, -0.71f, -9}, c{8, -2.13f, 9}, d{-8, -2.77f, 8};
+    mesh.add(a, b, c), mesh.add(a, c, d);
+    for (int i = 0; i < 60; ++i) {
+        const Vec3 from = random.in_cube(8), to = random.in_cube(8);
+        mesh.add(from, to, to + random.in_cube(random.decades(-7, -1)));
+    }
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 p = random.in_cube(8);
+        mesh.add(p, p + random.in_cube(0.3), p + random.in_cube(0.3));
+    }
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(seed);
+    return scene;
+}
+
+Bvh split(const TestScene& scene) {
+    std::vector<BuildPrimitive> primitives;
+    EXPECT_TRUE(append_primitives(scene.geometries()[0], 0, 0, primitives));
+    BvhOptions options;
+    options.builder = BvhBuilder::high_quality;
+    options.split_boxes = true;
+    const std::function<bool()> never;
+    Cancellation cancelled(never);
+    return build_bvh(primitives, options, cancelled);
+}
+
+TEST(SplitBoxes, AreBoundedAndLoseNothing) {
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        const TestScene scene = overlapping(seed);
+        const size_t triangles = scene.meshes[0].indices.size() / 3;
+        std::vector<uint32_t> ids = split(scene).blocks;
+        ids.erase(std::remove(ids.begin(), ids.end(), kNoHit), ids.end());
+        EXPECT_GT(ids.size(), triangles + 20) << "nothing was split: the other tests show nothing";
+        EXPECT_LE(ids.size(), triangles + triangles / 2);
+        std::sort(ids.begin(), ids.end());
+        ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+        EXPECT_EQ(ids.size(), triangles);
+    }
+}
+
+/// A point of a triangle, now and then on an edge.
+Vec3 point_on(const TriangleMesh& mesh, size_t triangle, Random& random) {
+    const auto corner = [&](size_t i) { return Vec3d(mesh.positions[mesh.indices[3 * triangle + i]]); };
+    double u = random.unit(), v = random.below(4) ? random.unit() : 0;
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    return Vec3(corner(0) * (1 - u - v) + corner(1) * u + corner(2) * v);
+}
+
+/// Towards a triangle from up to 1e7 times its size away, where a float of t is wider than it is; in its plane, but for
+/// rounding; along an axis through one of its points, and through a corner of a box.
+std::vector<Ray> adversarial_rays(const TestScene& scene, size_t count, uint64_t seed) {
+    const TriangleMesh& mesh = scene.meshes[0];
+    const auto triangles = static_cast<uint32_t>(mesh.indices.size() / 3);
+    Random random(seed);
+    std::vector<Ray> rays;
+    while (rays.size() < count) {
+        const size_t triangle = random.below(2) ? random.below(62) : random.below(triangles);
+        const Vec3 target = point_on(mesh, triangle, random);
+        Ray ray{{}, 0, {}, kInfinity};
+        switch (random.below(4)) {
+            case 0:
+                ray.o = Vec3(Vec3d(target) + Vec3d(random.direction()) * random.decades(0, 8));
+                ray.d = Vec3(Vec3d(target) - Vec3d(ray.o));
+                if (random.below(2)) ray.d = normalize(ray.d);
+                break;
+            case 1: {
+                const Vec3d along = Vec3d(point_on(mesh, triangle, random)) - Vec3d(target);
+                ray.o = Vec3(Vec3d(target) - along * random.decades(-1, 7));
+                ray.d = Vec3(along);
+                break;
+            }
+            case 2: {
+                const auto axis = static_cast<int>(random.below(3));
+                ray.o = target, ray.d = {};
+                ray.o[axis] += static_cast<float>(random.decades(0, 7));
+                ray.d[axis] = -1;
+                break;
+            }
+            default: {
+                const Vec3 other = mesh.positions[mesh.indices[3 * triangle + random.below(3)]];
+                Vec3 at = target;
+                for (int axis = 0; axis < 3; ++axis)
+                    if (random.below(2)) at[axis] = other[axis];
+                ray.o = Vec3(Vec3d(at) + Vec3d(random.direction()) * random.decades(-2, 3));
+                ray.d = Vec3(Vec3d(at) - Vec3d(ray.o));
+            }
+        }
+        if (random.below(8) == 0) ray.tmin = static_cast<float>(length(Vec3d(target) - Vec3d(ray.o)));
+        if (length(Vec3d(ray.d)) > 0) rays.push_back(ray);
+    }
+    return rays;
+}
+
+TEST(SplitBoxes, EveryBitOfEveryHit) {
+    size_t hit = 0, shot = 0;
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        const TestScene scene = overlapping(seed);
+        const BruteForce brute(scene);
+        const std::vector<Ray> rays = adversarial_rays(scene, by_tier<size_t>(2'500, 250'000), seed + 100);
+        std::vector<Hit> expected(rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+        for (const Isa isa : supported_isas()) {
+            AccelOptions options;
+            options.builder = BvhBuilder::high_quality;
+            options.isa = isa;
+            const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+            ASSERT_TRUE(accel);
+            for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
+                std::vector<Hit> hits(rays.size());
+                std::vector<uint8_t> occluded(rays.size());
+                accel->intersect(rays, hits, kind);
+                accel->occluded(rays, occluded, kind);
+                for (size_t i = 0; i < rays.size(); ++i)
+                    ASSERT_TRUE(same_bits(hits[i], expected[i]) && (occluded[i] != 0) == expected[i].found())
+                        << "scene " << seed << ", instruction set " << int(isa) << "\nray      " << describe(rays[i])
+                        << "\nexpected " << describe(expected[i]) << "\ngot      " << describe(hits[i]);
+            }
+        }
+        for (const Hit& h : expected) hit += h.found();
+        shot += rays.size();
+    }
+    EXPECT_GT(hit, shot / 2);
+}
+
+// A triangle in several leaves counts once.
+TEST(SplitBoxes, NextHitEnumeratesEveryTriangleOnce) {
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+        const TestScene scene = overlapping(seed);
+        const BruteForce brute(scene);
+        AccelOptions options;
+        options.builder = BvhBuilder::high_quality;
+        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+        ASSERT_TRUE(accel);
+        for (const Ray& ray : adversarial_rays(scene, by_tier<size_t>(1'000, 20'000), seed + 200)) {
+            Hit hit = accel->intersect(ray);
+            for (const Hit& wanted : brute.all_hits(ray)) {
+                ASSERT_TRUE(same_bits(hit, wanted)) << describe(ray) << "\nexpected " << describe(wanted)
+                                                    << "\ngot      " << describe(hit);
+                const Hit after = hit;
+                accel->next_hit({&ray, 1}, {&after, 1}, {&hit, 1});
+            }
+            EXPECT_FALSE(hit.found());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace steradian::test
