@@ -84,7 +84,12 @@ struct Visits {
 class Counter {
 public:
     Counter(const LevelView& level, const Ray& ray, bool any_hit, Visits& visits)
-        : level_(level), slab_(ray), triangle_ray_(ray), tmin_(ray.tmin), limit_(ray.tmax), any_(any_hit),
+        : level_(level),
+          slab_(ray),
+          triangle_ray_(ray),
+          tmin_(ray.tmin),
+          limit_(ray.tmax),
+          any_(any_hit),
           visits_(visits) {
         for (int axis = 0; axis < 3; ++axis) octant_ |= uint32_t(slab_.negative[axis]) << axis;
     }

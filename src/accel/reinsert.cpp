@@ -1,8 +1,9 @@
 // Insertion-based optimisation: a node is taken out with everything below it and put beside another one, where that
 // makes the sum of all surfaces smaller (Bittner, Hapala & Havran 2013, "Fast Insertion-Based Optimization of Bounding
-// Volume Hierarchies"). As in Meister & Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization",
-// the best places of many nodes are sought at once, by all workers, in a tree that stands still; then the moves are made
-// one after the other, the most promising first, each after a look at what it gains in the tree as it is by then.
+// Volume Hierarchies"). As in Meister & Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy
+// Optimization", the best places of many nodes are sought at once, by all workers, in a tree that stands still; then
+// the moves are made one after the other, the most promising first, each after a look at what it gains in the tree as
+// it is by then.
 #include "accel/reinsert.h"
 
 #include <algorithm>

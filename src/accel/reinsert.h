@@ -1,4 +1,5 @@
-// Takes nodes of a binary tree from where a builder that looked from the top down has put them to where they are better.
+// Takes nodes of a binary tree from where a builder that looked from the top down has put them to where they are
+// better.
 #pragma once
 
 #include "accel/binary_tree.h"

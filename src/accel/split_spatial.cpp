@@ -54,7 +54,7 @@ Sides sides_of(const BuildPrimitive& p, const SpatialSplit& split) {
         return {left, !left};
     }
     const float lo = p.lo[split.axis], hi = p.hi[split.axis];
-    return {lo < split.plane, hi > split.plane || lo >= split.plane};
+    return {lo<split.plane, hi> split.plane || lo >= split.plane};
 }
 
 struct Bins {

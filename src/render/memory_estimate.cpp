@@ -16,7 +16,8 @@ namespace {
 
 /// Of the hierarchy, measured on meshes of one to three million triangles (a fifth of the bytes are the nodes, the
 /// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
-constexpr uint64_t kTriangleBytes = 55, kTriangleBytesMedian = 66, kTriangleBuildBytes = 75;
+constexpr uint64_t kTriangleBytes = 55, kTriangleBytesMedian = 66, kTriangleBytesHighQuality = 62;
+constexpr uint64_t kTriangleBuildBytes = 75, kTriangleBuildBytesHighQuality = 185;
 constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
 constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
 
@@ -70,12 +71,16 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
     const uint64_t instances = scene.instances.size();
     MemoryEstimate out;
     out.scene = scene_bytes(scene);
-    const uint64_t triangle = execution.bvh == BvhBuilder::median ? kTriangleBytesMedian : kTriangleBytes;
+    const bool high_quality = execution.bvh == BvhBuilder::high_quality;
+    const uint64_t triangle = high_quality                          ? kTriangleBytesHighQuality
+                              : execution.bvh == BvhBuilder::median ? kTriangleBytesMedian
+                                                                    : kTriangleBytes;
+    const uint64_t triangle_build = high_quality ? kTriangleBuildBytesHighQuality : kTriangleBuildBytes;
     out.hierarchy = triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
                     instances * sizeof(ShadingScene::InstanceData) +
                     scene.lights.size() * sizeof(ShadingScene::LightData);
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
-    out.build = triangles * kTriangleBuildBytes + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
+    out.build = triangles * triangle_build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
     out.picture = picture_bytes(settings, execution);
     return out;
 }

@@ -13,19 +13,39 @@
 namespace steradian::test {
 namespace {
 
-/// A ground of two huge triangles that does not lie along the axes, slivers across each other in all directions, and
-/// small triangles in between that make it worth while to split them.
+/// A point of the plane x + 2 y + 3 z = 0; exact, for small numbers.
+Vec3 on_lattice(int a, int b) {
+    return Vec3{static_cast<float>(3 * a), static_cast<float>(3 * b), static_cast<float>(-a - 2 * b)} * 0.0625f;
+}
+Vec3 on_lattice(Random& random, int most) {
+    const int a = int(random.below(static_cast<uint32_t>(2 * most + 1))) - most;
+    return on_lattice(a, int(random.below(static_cast<uint32_t>(2 * most + 1))) - most);
+}
+
+constexpr uint32_t kLattice = 24, kSheets = 16, kSlivers = 60, kSmall = 300;
+
+/// Large triangles that lie exactly in one plane, which is not along the axes; sheets of huge ones so close to each
+/// other that from far away they are at the same t; slivers across each other in all directions; and small triangles in
+/// between that make it worth while to split all of these.
 TestScene overlapping(uint64_t seed) {
     TestScene scene("overlapping");
     TriangleMesh mesh;
     Random random(seed);
-    const Vec3 a{-9, -1.37f, -8}, b{9, -0.71f, -9}, c{8, -2.13f, 9}, d{-8, -2.77f, 8};
-    mesh.add(a, b, c), mesh.add(a, c, d);
-    for (int i = 0; i < 60; ++i) {
+    for (uint32_t i = 0; i < kLattice; ++i) {
+        const Vec3 p = on_lattice(random, 40), q = on_lattice(random, 40);
+        mesh.add(p, q, on_lattice(random, 40));
+    }
+    for (uint32_t i = 0; i < kSheets; i += 2) {
+        const Vec3 by = random.in_cube(random.decades(-3, -0.5));
+        const Vec3 a = Vec3{-9, -1.37f, -8} + by, b = Vec3{9, -0.71f, -9} + by, c = Vec3{8, -2.13f, 9} + by,
+                   d = Vec3{-8, -2.77f, 8} + by;
+        mesh.add(a, b, c), mesh.add(a, c, d);
+    }
+    for (uint32_t i = 0; i < kSlivers; ++i) {
         const Vec3 from = random.in_cube(8), to = random.in_cube(8);
         mesh.add(from, to, to + random.in_cube(random.decades(-7, -1)));
     }
-    for (int i = 0; i < 300; ++i) {
+    for (uint32_t i = 0; i < kSmall; ++i) {
         const Vec3 p = random.in_cube(8);
         mesh.add(p, p + random.in_cube(0.3), p + random.in_cube(0.3));
     }
@@ -68,17 +88,20 @@ Vec3 point_on(const TriangleMesh& mesh, size_t triangle, Random& random) {
 }
 
 /// Towards a triangle from up to 1e7 times its size away, where a float of t is wider than it is; in its plane, but for
-/// rounding; along an axis through one of its points, and through a corner of a box.
+/// rounding, or exactly, where only the arithmetic of the test decides what is hit; along an axis through one of its
+/// points, and through a corner of a box.
 std::vector<Ray> adversarial_rays(const TestScene& scene, size_t count, uint64_t seed) {
     const TriangleMesh& mesh = scene.meshes[0];
     const auto triangles = static_cast<uint32_t>(mesh.indices.size() / 3);
     Random random(seed);
     std::vector<Ray> rays;
     while (rays.size() < count) {
-        const size_t triangle = random.below(2) ? random.below(62) : random.below(triangles);
+        const size_t triangle = random.below(2)   ? kLattice + random.below(kSheets)
+                                : random.below(2) ? random.below(kLattice + kSheets + kSlivers)
+                                                  : random.below(triangles);
         const Vec3 target = point_on(mesh, triangle, random);
         Ray ray{{}, 0, {}, kInfinity};
-        switch (random.below(4)) {
+        switch (random.below(5)) {
             case 0:
                 ray.o = Vec3(Vec3d(target) + Vec3d(random.direction()) * random.decades(0, 8));
                 ray.d = Vec3(Vec3d(target) - Vec3d(ray.o));
@@ -97,6 +120,10 @@ std::vector<Ray> adversarial_rays(const TestScene& scene, size_t count, uint64_t
                 ray.d[axis] = -1;
                 break;
             }
+            case 3:
+                ray.o = on_lattice(random, 60);
+                ray.d = on_lattice(random, 12);
+                break;
             default: {
                 const Vec3 other = mesh.positions[mesh.indices[3 * triangle + random.below(3)]];
                 Vec3 at = target;
@@ -155,8 +182,8 @@ TEST(SplitBoxes, NextHitEnumeratesEveryTriangleOnce) {
         for (const Ray& ray : adversarial_rays(scene, by_tier<size_t>(1'000, 20'000), seed + 200)) {
             Hit hit = accel->intersect(ray);
             for (const Hit& wanted : brute.all_hits(ray)) {
-                ASSERT_TRUE(same_bits(hit, wanted)) << describe(ray) << "\nexpected " << describe(wanted)
-                                                    << "\ngot      " << describe(hit);
+                ASSERT_TRUE(same_bits(hit, wanted))
+                    << describe(ray) << "\nexpected " << describe(wanted) << "\ngot      " << describe(hit);
                 const Hit after = hit;
                 accel->next_hit({&ray, 1}, {&after, 1}, {&hit, 1});
             }
