@@ -126,7 +126,9 @@ ItemKind kind_of(const Geometry& geometry) {
 }
 
 BvhOptions bvh_options(const AccelOptions& options, ItemKind mostly) {
-    return {options.builder, options.max_depth, mostly, false};
+    BvhOptions out;
+    out.builder = options.builder, out.max_depth = options.max_depth, out.mostly = mostly;
+    return out;
 }
 
 /// The hierarchies of the geometries that are not on the upper level; that these are sound is checked as well.

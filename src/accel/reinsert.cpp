@@ -243,14 +243,17 @@ std::vector<Move> find_moves(const Tree& tree, Cancellation& cancelled) {
 void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, Cancellation& cancelled,
               uint64_t work) {
     Tree tree(root, max_depth);
+    uint64_t work_left = work;
     for (int pass = 0; pass < kPasses && tree.has_room(); ++pass) {
         const std::vector<Move> moves = find_moves(tree, cancelled);
         cancelled.advance(work / kPasses);
+        work_left -= work / kPasses;
         for (size_t i = 0; i < moves.size(); ++i) {
             if (i % kGrain == 0 && cancelled.poll()) break;
             tree.apply(moves[i]);
         }
     }
+    cancelled.advance(work_left);
     primitives = tree.store(primitives);
 }
 

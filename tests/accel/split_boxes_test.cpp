@@ -55,13 +55,12 @@ TestScene overlapping(uint64_t seed) {
 }
 
 Bvh split(const TestScene& scene) {
-    std::vector<BuildPrimitive> primitives;
+    LargeArray<BuildPrimitive> primitives;
     EXPECT_TRUE(append_primitives(scene.geometries()[0], 0, 0, primitives));
     BvhOptions options;
     options.builder = BvhBuilder::high_quality;
     options.split_boxes = true;
-    const std::function<bool()> never;
-    Cancellation cancelled(never);
+    Cancellation cancelled;
     return build_bvh(primitives, options, cancelled);
 }
 

@@ -51,8 +51,7 @@ TEST(Job, TheSameBitsOnAnyNumberOfThreadsTilesAndBuilders) {
             << threads;
     for (const uint32_t tile : {1u, 13u, 64u, 256u})
         EXPECT_EQ(image_hash(run(scene, small_settings(), {2, tile, BvhBuilder::sah, 64}).image), expected) << tile;
-    for (const BvhBuilder builder :
-         {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality})
+    for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality})
         for (const uint32_t depth : {1u, 3u, 64u}) {
             const Execution execution{2, 16, builder, depth};
             EXPECT_EQ(image_hash(run(prepared(test::everything_scene(), execution), small_settings(), execution).image),
