@@ -293,6 +293,38 @@ def hero():
     })
 
 
+def metals():
+    """Two rows of balls, polished on the left, rough on the right, and a brushed one, in a studio."""
+    roughnesses = [0, 0.15, 0.3, 0.5, 0.75, 1]
+    materials = {
+        "floor": {"type": "diffuse", "reflectance": {"type": "checkerboard", "color0": [0.25, 0.25, 0.27],
+                                                     "color1": [0.16, 0.16, 0.17], "scale": 24}},
+        "lamp": {"type": "diffuse", "reflectance": 0},
+    }
+    objects = [{"type": "rectangle", "half_u": [8, 0, 0], "half_v": [0, 0, -8], "material": "floor"}]
+    for row, (metal, z) in enumerate((("gold", 0), ("chromium", -1.25))):
+        for i, roughness in enumerate(roughnesses):
+            name = f"{metal}{i}"
+            materials[name] = {"type": "conductor", "metal": metal, "roughness": roughness}
+            objects.append({"type": "sphere", "center": [1.1 * (i - 2.5), 0.5, z], "radius": 0.5, "material": name})
+    materials["brushed"] = {"type": "conductor", "metal": "copper", "roughness": [0.75, 0.2]}
+    objects.append({"type": "disk", "center": [0, 1.1, -2.6], "normal": [0, 0.1, 1], "radius": 1, "material": "brushed"})
+    for x, color in ((-3.5, [9, 8.2, 7]), (3.5, [6, 7, 9])):
+        objects.append({"type": "rectangle", "center": [x, 4, 2], "half_u": [0.8, 0, 0], "half_v": [0, 0, 0.8],
+                        "material": "lamp", "light": {"radiance": color, "light_samples": 2, "two_sided": True}})
+    dump("metals.json", {
+        "$schema": "../docs/scene.schema.json",
+        "version": 1,
+        "comment": "Gold and chromium from polished to rough, and brushed copper.",
+        "render": {"integrator": "direct", "max_depth": 8, "spp": 64},
+        "film": {"resolution": [720, 405]},
+        "camera": {"position": [0, 2.4, 7.5], "look_at": [0, 0.62, -0.7], "vertical_fov": 28},
+        "materials": materials,
+        "objects": objects,
+        "lights": [{"type": "environment", "path": "evening_sky.hdr", "light_samples": 4}],
+    })
+
+
 if __name__ == "__main__":
     cornell()
     spheres()
@@ -300,3 +332,4 @@ if __name__ == "__main__":
     evening_sky()
     knot("knot.ply")
     hero()
+    metals()

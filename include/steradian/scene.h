@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -58,6 +60,30 @@ using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture>;
 
 // --- Materials -------------------------------------------------------------------------------------------------
 
+/// Of a microfacet distribution of Trowbridge and Reitz (GGX). 0 on both axes is perfectly smooth; else α is at least
+/// 1e-4.
+struct Roughness {
+    Vec2 value{0, 0};                                 ///< along u and across, [0, 1]
+    bool squared = true;                              ///< α = value², as most scenes have it; otherwise α = value
+    std::optional<TextureId> texture = std::nullopt;  ///< its first channel, clamped to [0, 1], multiplies `value`
+};
+
+/// n + ik of a metal over the index of what surrounds it, for red, green and blue.
+struct ComplexIndex {
+    Rgb n{1, 1, 1};  ///< > 0
+    Rgb k{0, 0, 0};  ///< >= 0
+};
+/// By name: silver, gold, copper, aluminium, iron, steel, chromium, titanium, nickel, brass. Nothing for others.
+std::optional<ComplexIndex> metal_index(std::string_view name);
+/// All names, for messages.
+std::span<const std::string_view> metal_names();
+
+/// Schlick's approximation: from one colour at normal incidence to another at 90 degrees.
+struct SchlickReflectance {
+    TextureId normal{};
+    Rgb grazing{1, 1, 1};
+};
+
 /// Lambert, f = reflectance / π. One-sided with respect to the shading normal unless two_sided.
 struct DiffuseMaterial {
     TextureId reflectance{};
@@ -81,7 +107,13 @@ struct MirrorMaterial {
     Rgb reflectance{1, 1, 1};
 };
 
-using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial>;
+/// Metal, both sides: microfacets with all bounces between them, so that roughness does not darken it.
+struct ConductorMaterial {
+    std::variant<ComplexIndex, SchlickReflectance> reflectance;
+    Roughness roughness;
+};
+
+using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial>;
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 

@@ -82,6 +82,12 @@ struct Frame {
         const float b = n.x * n.y * a;
         return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
     }
+    /// With x as near to `towards` as can be; any basis where that is along n, zero or not finite.
+    static Frame from_zx(Vec3 n, Vec3 towards) {
+        const Vec3 x = normalize(towards - n * dot(towards, n));
+        const Vec3 y = cross(n, x);
+        return is_finite(x) && length_squared(y) > 0.5f ? Frame{x, y, n} : from_z(n);
+    }
     Vec3 to_local(Vec3 v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
     Vec3 to_world(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
 };
@@ -96,6 +102,7 @@ struct Frame3d {
         const double b = n.x * n.y * a;
         return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
     }
+    Vec3d to_local(Vec3d v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
     Vec3d to_world(Vec3d v) const { return x * v.x + y * v.y + z * v.z; }
 };
 

@@ -55,6 +55,11 @@ private:
     void put(const RefractionMaterial& m) { put(m.eta); }
     void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance); }
     void put(const MirrorMaterial& m) { put(m.reflectance); }
+    void put(const std::optional<TextureId>& t) { put(t.has_value(), t.value_or(TextureId{})); }
+    void put(const Roughness& r) { put(r.value, r.squared, r.texture); }
+    void put(const ComplexIndex& i) { put(i.n, i.k); }
+    void put(const SchlickReflectance& r) { put(r.normal, r.grazing); }
+    void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness); }
     template <class T>
     void raw(const std::vector<T>& values) {
         hash_.value(uint64_t(values.size()));

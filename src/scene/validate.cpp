@@ -43,7 +43,7 @@ private:
         }
     }
     template <class... T>
-    void check(const std::variant<T...>& v) {
+    void check(const std::variant<T...>& v) const {
         std::visit([this](const auto& alternative) { this->check(alternative); }, v);
     }
     void require(bool good, const char* what) const {
@@ -91,6 +91,23 @@ private:
     }
     void check(const MirrorMaterial& m) const {
         color(m.reflectance, "the reflectance must be finite and not negative");
+    }
+    void check(const Roughness& r) const {
+        require(r.value.x >= 0 && r.value.x <= 1 && r.value.y >= 0 && r.value.y <= 1,
+                "the roughness must be between 0 and 1");
+        if (r.texture) refers(*r.texture, s_.textures, "texture");
+    }
+    void check(const ComplexIndex& i) const {
+        color(i.k, "k must be finite and not negative");
+        require(is_finite(i.n) && i.n.r > 0 && i.n.g > 0 && i.n.b > 0, "n must be finite and positive");
+    }
+    void check(const SchlickReflectance& r) const {
+        refers(r.normal, s_.textures, "texture");
+        color(r.grazing, "the reflectance at the edge must be finite and not negative");
+    }
+    void check(const ConductorMaterial& m) const {
+        check(m.reflectance);
+        check(m.roughness);
     }
 
     void check(const Mesh& m) const {

@@ -1,4 +1,5 @@
-// How surfaces scatter. A Bsdf is a value: textures have been read, nothing refers to the scene.
+// How surfaces scatter. A Bsdf is a value: textures have been read; nothing refers to the scene but tables of the
+// material, which live as long as the ShadingScene.
 // wo and wi are unit world vectors that point away from the surface. Every pdf is per solid angle.
 #pragma once
 
@@ -6,6 +7,8 @@
 #include <variant>
 
 #include "math/vector.h"
+#include "shading/fresnel.h"
+#include "shading/microfacet_energy.h"
 #include "shading/surface.h"
 #include "steradian/scene.h"
 
@@ -25,11 +28,20 @@ struct GlassBsdf {
 struct MirrorBsdf {
     Rgb reflectance;
 };
+struct ConductorBsdf {
+    struct Schlick {
+        Rgb normal, grazing;
+    };
+    std::variant<ComplexIndex, Schlick> fresnel;
+    Rgb mean_fresnel;
+    Microfacets facets;
+    const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
+};
 
 struct Bsdf {
-    std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf> lobe;
+    std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf> lobe;
     Vec3 ng;
-    Frame frame;  ///< z is the shading normal
+    Frame frame;  ///< z is the shading normal, x the direction of u where the lobe has one
 };
 
 struct BsdfEval {
@@ -51,9 +63,5 @@ bool is_specular(const Bsdf& bsdf) noexcept;
 BsdfEval eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) noexcept;
 /// Nothing when no light can leave towards wo (the back of a one-sided surface, say).
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float uc, Vec2 u) noexcept;
-
-/// Unpolarised reflectance of a smooth dielectric; cos_i on the incident side in [0, 1], eta = transmitted over
-/// incident index. 1 for total internal reflection.
-float fresnel_dielectric(float cos_i, float eta) noexcept;
 
 }  // namespace steradian

@@ -1,11 +1,15 @@
 #include "shading/shading_scene.h"
 
+#include <map>
 #include <new>
+#include <tuple>
 
 #include "math/elementary.h"
 #include "shading/environment.h"
+#include "shading/fresnel.h"
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/sphere_emitter.h"
+#include "shading/microfacet_energy.h"
 #include "shading/surface.h"
 #include "shading/surface_error.h"
 #include "shading/texture.h"
@@ -190,6 +194,35 @@ private:
     Diagnostics& diagnostics_;
 };
 
+/// Materials that are equally rough share their tables.
+class MaterialBuilder {
+public:
+    explicit MaterialBuilder(ShadingScene& scene) : scene_(scene) {}
+
+    void operator()(const ConductorMaterial& m) {
+        data().energy = reflecting(m.roughness);
+        if (const auto* complex = std::get_if<ComplexIndex>(&m.reflectance))
+            data().mean_fresnel = mean_fresnel_conductor(*complex);
+    }
+    template <class Other>
+    void operator()(const Other&) {}
+
+private:
+    ShadingScene::MaterialData& data() { return scene_.materials.back(); }
+
+    std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& r) {
+        if (r.value == Vec2{0, 0}) return nullptr;
+        const Key key{r.value.x, r.value.y, r.squared, r.texture.has_value()};
+        auto& known = reflecting_[key];
+        if (!known) known = MicrofacetEnergy::reflecting(r);
+        return known;
+    }
+
+    using Key = std::tuple<float, float, bool, bool>;
+    ShadingScene& scene_;
+    std::map<Key, std::shared_ptr<const MicrofacetEnergy>> reflecting_;
+};
+
 /// Image textures only: the environment counts its own.
 /// Only images of floats can.
 bool adds_energy(const RawImage& image) {
@@ -227,12 +260,19 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
             out.transforms.push_back(transform_data(instance.world_from_object));
         }
         out.lights.reserve(out.scene.lights.size());
+        out.materials.reserve(out.scene.materials.size());
+        MaterialBuilder materials(out);
+        for (const Material& material : out.scene.materials) {
+            out.materials.emplace_back();
+            std::visit(materials, material);
+        }
         LightBuilder lights(out, diagnostics);
         for (const Light& light : out.scene.lights) lights.add(light);
         warn_about_texels(out.scene, diagnostics);
         return out;
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::resources, "not enough memory for the light tables of the scene", {}, {}, {}};
+        return Error{
+            ErrorCode::resources, "not enough memory for the tables of the scene's lights and materials", {}, {}, {}};
     }
 }
 

@@ -14,6 +14,7 @@
 
 namespace steradian {
 
+class MicrofacetEnergy;  // what rough surfaces lose, see microfacet_energy.h
 class EnvironmentTable;  // the environment's radiance and its sampling distribution, see environment.h
 
 inline constexpr uint32_t kNoLight = 0xffffffffu;
@@ -44,6 +45,13 @@ struct ShadingScene {
         double cos_inner = 1, cos_outer = 1;  ///< for spots
     };
     std::vector<LightData> lights;
+
+    /// What follows from a material alone; empty where its kind needs nothing.
+    struct MaterialData {
+        std::shared_ptr<const MicrofacetEnergy> energy;
+        Rgb mean_fresnel;  ///< of metals with a complex index
+    };
+    std::vector<MaterialData> materials;  ///< parallel to scene.materials
 
     uint32_t environment_light = kNoLight;
     std::shared_ptr<const EnvironmentTable> environment;

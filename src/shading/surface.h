@@ -27,6 +27,10 @@ SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hi
 /// sample_light and pdf_light take it so (a constant environment is sampled about ns).
 SurfacePoint facing(SurfacePoint point, Vec3 wo) noexcept;
 
+/// In which direction u of `point` grows on the surface, in world space, of any length: what rough surfaces with a
+/// grain are turned by. Zero where the texture coordinates do not say. Of meshes without any: along the first edge.
+Vec3 tangent_at(const ShadingScene& scene, const SurfacePoint& point) noexcept;
+
 /// The two axes of a disk, perpendicular to its normal and `radius` long: what (u, v) of a hit refers to. Rounded to
 /// float, they define the plane of the disk; whoever gives disks to the ray kernels must use these.
 struct DiskAxes {

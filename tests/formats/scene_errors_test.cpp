@@ -183,6 +183,26 @@ TEST(SceneErrors, Materials) {
             "'reflectance' must be from 0 to 1e+06, got -1");
 }
 
+TEST(SceneErrors, Conductors) {
+    const auto refused_metal = [](const std::string& keys, std::string_view message, std::string_view hint = {}) {
+        refused("\"materials\": {\"m\": " + keys + "}", message, hint);
+    };
+    const std::string_view one_of = "a conductor needs one of 'metal', 'n' with 'k', and 'reflectance'";
+    refused_metal(R"(§{"type": "conductor"})", one_of);
+    refused_metal(R"(§{"type": "conductor", "metal": "gold", "reflectance": 1})", one_of);
+    refused_metal(R"(§{"type": "conductor", "n": 1})", "missing key 'k' in material 'm'");
+    refused_metal(R"({"type": "conductor", "metal": §"gould"})", "'metal' cannot be \"gould\"", "did you mean 'gold'?");
+    refused_metal(R"({"type": "conductor", "metal": "gold", §"k": 1})", "'k'", "");
+    refused_metal(R"({"type": "conductor", "metal": "gold", §"edge_reflectance": 1})", "'edge_reflectance'", "");
+    refused_metal(R"({"type": "conductor", "n": §0, "k": 1})", "'n' must be from 0.001 to 1000, got 0");
+    refused_metal(R"({"type": "conductor", "metal": "gold", "roughness": §1.5})", "'roughness' must be from 0 to 1");
+    refused_metal(R"({"type": "conductor", "metal": "gold", "roughness": [0, §-1]})", "'roughness'");
+    refused_metal(R"({"type": "conductor", "metal": "gold", "roughness": §"t"})", "there is no texture called 't'",
+                  "the file defines no texture");
+    refused_metal(R"({"type": "conductor", "metal": "gold", "roughness": 1, §"alpha": 1})",
+                  "either 'roughness' or 'alpha', not both");
+}
+
 TEST(SceneErrors, Objects) {
     refused("\"objects\": §{}", "'objects' must be an array, got an object");
     refused_object("§5", "an object must be an object, got 5");

@@ -119,6 +119,33 @@ TEST(NativeScene, Materials) {
     EXPECT_EQ(std::get<MirrorMaterial>(m[8]).reflectance, (Rgb{1, 1, 1}));
 }
 
+TEST(NativeScene, Conductors) {
+    const LoadedScene loaded =
+        load_good(scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}}, "materials": {
+        "gold": {"type": "conductor", "metal": "gold"},
+        "index": {"type": "conductor", "n": [0.2, 0.9, 1.1], "k": 3, "roughness": 0.5},
+        "brushed": {"type": "conductor", "reflectance": [0.9, 0.8, 0.7], "alpha": [0.1, 0.4]},
+        "textured": {"type": "conductor", "reflectance": "t", "edge_reflectance": 0.5, "roughness": "t"}})"));
+    std::vector<ConductorMaterial> m;
+    for (const Material& material : loaded.scene.materials) m.push_back(std::get<ConductorMaterial>(material));
+    ASSERT_EQ(m.size(), 4u);
+    const auto& gold = std::get<ComplexIndex>(m[0].reflectance);
+    EXPECT_EQ(gold.n, metal_index("gold")->n);
+    EXPECT_EQ(gold.k, metal_index("gold")->k);
+    EXPECT_EQ(m[0].roughness.value, (Vec2{0, 0}));
+    EXPECT_TRUE(m[0].roughness.squared);
+    EXPECT_EQ(std::get<ComplexIndex>(m[1].reflectance).n, (Rgb{0.2f, 0.9f, 1.1f}));
+    EXPECT_EQ(std::get<ComplexIndex>(m[1].reflectance).k, (Rgb{3, 3, 3}));
+    EXPECT_EQ(m[1].roughness.value, (Vec2{0.5f, 0.5f}));
+    EXPECT_EQ(std::get<SchlickReflectance>(m[2].reflectance).grazing, (Rgb{1, 1, 1}));
+    EXPECT_EQ(m[2].roughness.value, (Vec2{0.1f, 0.4f}));
+    EXPECT_FALSE(m[2].roughness.squared);
+    EXPECT_FALSE(m[2].roughness.texture);
+    EXPECT_EQ(std::get<SchlickReflectance>(m[3].reflectance).grazing, (Rgb{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(m[3].roughness.value, (Vec2{1, 1}));
+    EXPECT_EQ(m[3].roughness.texture, TextureId{0});
+}
+
 TEST(NativeScene, ReflectanceAboveOneIsWarnedAboutOnce) {
     const LoadedScene loaded =
         load_good(scene_with("\"materials\": {\n\"a\": {\"type\": \"diffuse\", \"reflectance\": 1.5},\n"

@@ -7,6 +7,7 @@
 #include "base/names.h"
 #include "formats/json/document.h"
 #include "formats/scene_json/keys.h"
+#include "steradian/scene.h"
 #include "support/support.h"
 
 namespace steradian::scene_json {
@@ -106,6 +107,7 @@ TEST_F(Schema, ListsTheSameWords) {
     check(property("render", "sampler"), names_of<SamplerKind>());
     check(property("filter", "type"), names_of<FilterKind>());
     check(property("image_texture", "filter"), kTextureFilters);
+    check(property("conductor_material", "metal"), metal_names());
     check(definition("wrap"), kWraps);
     check(definition("color_space"), kColorSpaces);
 }

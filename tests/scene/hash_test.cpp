@@ -19,6 +19,8 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(RefractionMaterial{}));
     add<MaterialId>(s.materials, Material(GlassMaterial{}));
     add<MaterialId>(s.materials, Material(MirrorMaterial{}));
+    add<MaterialId>(s.materials, Material(ConductorMaterial{ComplexIndex{}, {}}));
+    add<MaterialId>(s.materials, Material(ConductorMaterial{SchlickReflectance{}, {}}));
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
@@ -50,6 +52,14 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<RefractionMaterial>(s.materials[1]).eta = 2; },
         [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).transmittance.r = 0.5f; },
         [](Scene& s) { std::get<MirrorMaterial>(s.materials[3]).reflectance.r = 0.5f; },
+        [](Scene& s) { std::get<ComplexIndex>(std::get<ConductorMaterial>(s.materials[4]).reflectance).n.b = 2; },
+        [](Scene& s) { std::get<ComplexIndex>(std::get<ConductorMaterial>(s.materials[4]).reflectance).k.r = 2; },
+        [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.value.y = 1; },
+        [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.squared = false; },
+        [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.texture = TextureId{0}; },
+        [](Scene& s) {
+            std::get<SchlickReflectance>(std::get<ConductorMaterial>(s.materials[5]).reflectance).grazing.g = 0;
+        },
         [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },

@@ -48,6 +48,30 @@ INSTANTIATE_TEST_SUITE_P(
     All, ValidateFault,
     testing::Values(Fault{"material 'wood\\x1b': refers to texture 7, but there are 1",
                           [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
+                    Fault{"the roughness must be between 0 and 1",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, kNan}, true, std::nullopt}};
+                          }},
+                    Fault{"refers to texture 1",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};
+                          }},
+                    Fault{"n must be finite and positive",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{ComplexIndex{{1, 0, 1}, {}}, {}};
+                          }},
+                    Fault{"k must be finite and not negative",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{ComplexIndex{{1, 1, 1}, {-1, 0, 0}}, {}};
+                          }},
+                    Fault{"refers to texture 2",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{2}}, {}};
+                          }},
+                    Fault{"the reflectance at the edge",
+                          [](Scene& s) {
+                              s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{0}, {kInf, 0, 0}}, {}};
+                          }},
                     Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
                     Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
                     Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},

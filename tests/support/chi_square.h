@@ -40,7 +40,7 @@ double chi_square_upper_tail(double statistic, double dof);
 /// i in [0, n) is a unit direction or nothing; `density` is per solid angle and may integrate to less than 1: the rest
 /// is what `sample` must return nothing for, as one more bin. The density is integrated over each cell by the composite
 /// midpoint rule with 16 × 16 points, refined to at most 512 × 512 until a step changes the cell's expectation by less
-/// than 1e-3 of its standard deviation. So a peak must not be narrower than about a sixteenth of a cell; p is 0 when
+/// than 1e-2 of its standard deviation. So a peak must not be narrower than about a sixteenth of a cell; p is 0 when
 /// the integral is not known to 1 % or is above 1, and when a sample is not finite.
 ChiSquare chi_square_directions(const std::function<std::optional<Vec3>(uint64_t)>& sample,
                                 const std::function<double(Vec3)>& density, uint64_t n, int theta_bins, int phi_bins);

@@ -27,6 +27,8 @@ inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided"};
 inline constexpr Key kRefraction[] = {"type", "eta"};
 inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance"};
 inline constexpr Key kMirror[] = {"type", "reflectance"};
+inline constexpr Key kConductor[] = {"type",      "metal", "n", "k", "reflectance", "edge_reflectance",
+                                     "roughness", "alpha"};
 
 inline constexpr Key kMeshShape[] = {"type", "path", "vertices", "triangles", "normals", "uvs"};
 inline constexpr Key kSphereShape[] = {"type", "center", "radius"};
@@ -68,7 +70,8 @@ inline constexpr ObjectSpec kTextureSpecs[] = {{"constant_texture", keys::kConst
 inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiffuse},
                                                 {"refraction_material", keys::kRefraction},
                                                 {"glass_material", keys::kGlass},
-                                                {"mirror_material", keys::kMirror}};
+                                                {"mirror_material", keys::kMirror},
+                                                {"conductor_material", keys::kConductor}};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
                                              {"sphere_shape", keys::kSphereShape},
                                              {"rectangle_shape", keys::kRectangleShape},
@@ -90,7 +93,7 @@ inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
 
 // The values of "type", in the order of the specifications above and of the enumerations that the readers use.
 inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard"};
-inline constexpr std::string_view kMaterialTypes[] = {"diffuse", "refraction", "glass", "mirror"};
+inline constexpr std::string_view kMaterialTypes[] = {"diffuse", "refraction", "glass", "mirror", "conductor"};
 inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};

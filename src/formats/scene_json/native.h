@@ -27,8 +27,13 @@ private:
     void read_textures(Value value);
     TextureId read_texture(Value value, const std::string& name);
     TextureId read_image_texture(Value value, const std::string& name);
+    /// The name of a texture, or a texture; nothing for other values.
+    std::optional<TextureId> find_texture(Value value);
     /// A colour, the name of a texture, or a texture.
     TextureId read_reflectance(ObjectReader& material);
+    /// "roughness" or "alpha": a number, two, or a texture.
+    Roughness read_roughness(ObjectReader& material);
+    ConductorMaterial read_conductor(ObjectReader& material);
     void read_materials(Value value);
     MaterialId read_material(Value value, const std::string& name);
     /// A name or a material.

@@ -82,16 +82,57 @@ TextureId NativeLoader::read_image_texture(Value value, const std::string& name)
     return assets_.add_texture(texture, name);
 }
 
-TextureId NativeLoader::read_reflectance(ObjectReader& material) {
-    const Value value = material.require("reflectance");
+std::optional<TextureId> NativeLoader::find_texture(Value value) {
     if (value.is(Kind::string)) return textures_.get(source_, value.string(), value.offset());
     if (value.is(Kind::object)) return read_texture(value, "");
+    return std::nullopt;
+}
+
+TextureId NativeLoader::read_reflectance(ObjectReader& material) {
+    const Value value = material.require("reflectance");
+    if (const auto texture = find_texture(value)) return *texture;
     if (!value.is(Kind::number) && !value.is(Kind::array))
         source_.fail(value.offset(), "'reflectance' must be a colour, the name of a texture or a texture, got " +
                                          json::describe(value));
     const Rgb color = json::read_color(source_, value, "'reflectance'", json::kReflectance);
     context_.warn_about_reflectance(color, value.offset());
     return assets_.add_texture(ConstantTexture{color}, "");
+}
+
+Roughness NativeLoader::read_roughness(ObjectReader& material) {
+    static constexpr Range kUnit{0, 1};
+    Roughness out;
+    const auto alpha = material.find("alpha"), roughness = material.find("roughness");
+    if (alpha && roughness)
+        source_.fail(material.key_offset("alpha"), "either 'roughness' or 'alpha', not both: alpha = roughness²");
+    out.squared = !alpha;
+    const std::string_view key = alpha ? "alpha" : "roughness";
+    const std::optional<Value> value = alpha ? alpha : roughness;
+    if (!value) return out;
+    out.texture = find_texture(*value);
+    out.value = out.texture ? Vec2{1, 1} : material.vec2_or(key, out.value, kUnit);
+    return out;
+}
+
+ConductorMaterial NativeLoader::read_conductor(ObjectReader& material) {
+    static constexpr Range kIndexN{1e-3, 1e3}, kIndexK{0, 1e3};
+    ConductorMaterial out;
+    const auto name = material.find("metal"), n = material.find("n"), reflectance = material.find("reflectance");
+    if ((name ? 1 : 0) + (n ? 1 : 0) + (reflectance ? 1 : 0) != 1)
+        source_.fail(material.offset(), "a conductor needs one of 'metal', 'n' with 'k', and 'reflectance'");
+    if (name) {
+        const size_t choice = json::read_choice(source_, *name, "'metal'", metal_names());
+        out.reflectance = *metal_index(metal_names()[choice]);
+    } else if (n) {
+        out.reflectance = ComplexIndex{material.color("n", kIndexN), material.color("k", kIndexK)};
+    } else {
+        SchlickReflectance schlick{read_reflectance(material), {1, 1, 1}};
+        schlick.grazing = material.color_or("edge_reflectance", schlick.grazing, json::kReflectance);
+        context_.warn_about_reflectance(schlick.grazing, material.offset());
+        out.reflectance = schlick;
+    }
+    out.roughness = read_roughness(material);
+    return out;
 }
 
 void NativeLoader::read_materials(Value value) {
@@ -130,8 +171,11 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             material = glass;
             break;
         }
-        default:
+        case 3:
             material = MirrorMaterial{tint("reflectance")};
+            break;
+        default:
+            material = read_conductor(reader);
             break;
     }
     reader.finish();

@@ -7,8 +7,8 @@
 
 namespace steradian {
 
-inline DiffuseBsdf make_lobe(const DiffuseMaterial& material, const Scene& scene, const SurfacePoint& point) {
-    return {eval_texture(scene, material.reflectance, point.uv), material.two_sided};
+inline DiffuseBsdf make_lobe(const DiffuseMaterial& material, const LobeContext& context) {
+    return {eval_texture(context.scene.scene, material.reflectance, context.point.uv), material.two_sided};
 }
 
 inline bool lobe_is_specular(const DiffuseBsdf&) { return false; }

@@ -5,7 +5,7 @@
 
 namespace steradian {
 
-inline GlassBsdf make_lobe(const GlassMaterial& material, const Scene&, const SurfacePoint&) {
+inline GlassBsdf make_lobe(const GlassMaterial& material, const LobeContext&) {
     return {material.eta, material.reflectance, material.transmittance};
 }
 

@@ -1,5 +1,5 @@
-// What the lobes share. Each kind of lobe is one file with four functions, found by overloading:
-//   Lobe make_lobe(const LobeMaterial&, const Scene&, const SurfacePoint&);
+// What the lobes share. Each kind of lobe is one file with these functions, found by overloading:
+//   Lobe make_lobe(const LobeMaterial&, const LobeContext&);
 //   bool lobe_is_specular(const Lobe&);
 //   BsdfEval eval_lobe(const Lobe&, const LobeGeometry&, Vec3 wo, Vec3 wi);
 //   std::optional<BsdfSample> sample_lobe(const Lobe&, const LobeGeometry&, Vec3 wo, float uc, Vec2 u);
@@ -8,8 +8,22 @@
 #include <optional>
 
 #include "shading/bsdf.h"
+#include "shading/shading_scene.h"
 
 namespace steradian {
+
+/// What a lobe is made from, besides its material.
+struct LobeContext {
+    const ShadingScene& scene;
+    const SurfacePoint& point;
+    const ShadingScene::MaterialData& material;
+};
+
+/// Whether it matters how the lobe is turned about the normal.
+template <class Lobe>
+bool lobe_has_direction(const Lobe&) {
+    return false;
+}
 
 struct LobeGeometry {
     Vec3 ng;

@@ -5,9 +5,7 @@
 
 namespace steradian {
 
-inline MirrorBsdf make_lobe(const MirrorMaterial& material, const Scene&, const SurfacePoint&) {
-    return {material.reflectance};
-}
+inline MirrorBsdf make_lobe(const MirrorMaterial& material, const LobeContext&) { return {material.reflectance}; }
 
 inline bool lobe_is_specular(const MirrorBsdf&) { return true; }
 

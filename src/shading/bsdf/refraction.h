@@ -5,9 +5,7 @@
 
 namespace steradian {
 
-inline RefractionBsdf make_lobe(const RefractionMaterial& material, const Scene&, const SurfacePoint&) {
-    return {material.eta};
-}
+inline RefractionBsdf make_lobe(const RefractionMaterial& material, const LobeContext&) { return {material.eta}; }
 
 inline bool lobe_is_specular(const RefractionBsdf&) { return true; }
 

@@ -1,0 +1,201 @@
+#include "shading/microfacet_energy.h"
+
+#include <algorithm>
+#include <array>
+
+namespace steradian {
+namespace {
+
+constexpr int kLevels = 16, kAzimuths = 9, kPolar = 32;
+constexpr int kPsiNodes = 12;   // for each quarter turn
+constexpr int kSlopeNodes = 64;
+
+/// Nodes and weights of Gauss and Legendre on [0, 1], the roots found by Newton's method.
+template <int N>
+struct GaussLegendre {
+    std::array<double, N> x{}, w{};
+    GaussLegendre() {
+        for (int i = 0; i < N; ++i) {
+            double z = math::cos(std::numbers::pi * (i + 0.75) / (N + 0.5)), slope = 1;
+            for (int step = 0; step < 8; ++step) {
+                double p = 1, before = 0;
+                for (int k = 0; k < N; ++k) {
+                    const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
+                    before = p;
+                    p = next;
+                }
+                slope = N * (z * p - before) / (z * z - 1);
+                z -= p / slope;
+            }
+            x[size_t(i)] = (1 - z) / 2;
+            w[size_t(i)] = 1 / ((1 - z * z) * slope * slope);
+        }
+    }
+};
+
+/// A weighted sum over four neighbours of an axis with n >= 4 entries: the cubic through them (Lagrange).
+struct Cubic {
+    int first = 0, count = 1;
+    std::array<double, 4> w{1, 0, 0, 0};
+    Cubic(double t, int n) {
+        if (n == 1) return;
+        const double p = clamp_to(t, 0.0, 1.0) * (n - 1);
+        first = clamp_to(static_cast<int>(p) - 1, 0, n - 4);
+        count = 4;
+        const double f = p - first, f1 = f - 1, f2 = f - 2, f3 = f - 3;
+        w = {-f1 * f2 * f3 / 6, f * f2 * f3 / 2, -f * f1 * f3 / 2, f * f1 * f2 / 6};
+    }
+};
+
+/// Entries are dense at both ends, where the loss is like c log c and like the sine. c is the cosine in the space in
+/// which the roughness is 1 (ggx.h): there the loss changes at the same place whatever the roughness.
+double polar_from_cosine(double c) {
+    const double a = std::sqrt(max_of(c, 0.0)), b = std::sqrt(max_of(1 - c, 0.0));
+    return a / (a + b);
+}
+double cosine_from_polar(double t) { return t * t / (t * t + (1 - t) * (1 - t)); }
+
+/// The direction with the cosine c and the squared sine q of the azimuth in the space in which the roughness is 1.
+Vec3d unstretched(const Ggx& ggx, double c, double q) {
+    const double s = std::sqrt((1 - c) * (1 + c));
+    return normalize(Vec3d{s * std::sqrt(1 - q) / ggx.ax, s * std::sqrt(q) / ggx.ay, c});
+}
+
+/// ∫ G2 D / (4 o.z) over all reflected directions, as an integral over microfacet normals: with slopes m (αx cos ψ,
+/// αy sin ψ), m = tan β, the density of normals is 2 sin β cos β dβ dψ / 2π. For each ψ those that reflect upwards are
+/// an interval that begins at 0. The azimuth is divided where o · h changes its behaviour.
+double reflecting_albedo(const Ggx& ggx, Vec3d o) {
+    static const GaussLegendre<kPsiNodes> psi_rule;
+    static const GaussLegendre<kSlopeNodes> slope_rule;
+    const double psi_o = math::atan2(ggx.ay * o.y, ggx.ax * o.x), quarter = std::numbers::pi / 2;
+    const bool symmetric = ggx.ax == ggx.ay;  // on both sides of o
+    double sum = 0;
+    for (int q = 0; q < (symmetric ? 2 : 4); ++q)
+        for (size_t i = 0; i < psi_rule.x.size(); ++i) {
+            const double psi = psi_o + quarter * (q + psi_rule.x[i]);
+            const double sx = ggx.ax * math::cos(psi), sy = ggx.ay * math::sin(psi);
+            const double a = std::sqrt(sx * sx + sy * sy), along = (o.x * sx + o.y * sy) / a;
+            // The reflected direction rises while θ_h < (90° + the angle of o in this plane) / 2.
+            const double steepest = (quarter + math::atan2(along, o.z)) / 2;
+            const double beta_max = math::atan2(math::sin(steepest), a * math::cos(steepest));
+            double inner = 0;
+            for (size_t j = 0; j < slope_rule.x.size(); ++j) {
+                const double beta = beta_max * slope_rule.x[j], sb = math::sin(beta), cb = math::cos(beta);
+                const double m = sb / cb, hz = 1 / std::sqrt(1 + m * m * a * a);
+                const Vec3d h{m * sx * hz, m * sy * hz, hz};
+                const double oh = dot(o, h);
+                const Vec3d wi = h * (2 * oh) - o;
+                if (!(oh > 0 && wi.z > 0)) continue;
+                inner += slope_rule.w[j] * 2 * sb * cb * ggx.masking_over_cosine(o, wi) * oh / hz;
+            }
+            sum += psi_rule.w[i] / (symmetric ? 2 : 4) * beta_max * inner;
+        }
+    return sum;
+}
+
+Vec2 alphas(const Roughness& roughness, float scale) {
+    const auto alpha = [&](float value) {
+        const float r = clamp_to(value * scale, 0.0f, 1.0f);
+        return roughness.squared ? r * r : r;
+    };
+    return {alpha(roughness.value.x), alpha(roughness.value.y)};
+}
+
+Microfacets clamped(Vec2 alpha, float level) {
+    if (alpha.x == 0 && alpha.y == 0) return {0, 0, level};
+    return {max_of(alpha.x, kMinAlpha), max_of(alpha.y, kMinAlpha), level};
+}
+
+}  // namespace
+
+Microfacets microfacets(const Roughness& roughness, float texture) noexcept {
+    if (!roughness.texture) return clamped(alphas(roughness, 1), 1);
+    const float scale = clamp_to(texture, 0.0f, 1.0f);
+    return clamped(alphas(roughness, scale), roughness.squared ? scale : std::sqrt(scale));
+}
+
+MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness)
+    : levels_(roughness.texture ? kLevels : 1), azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths) {}
+
+Microfacets MicrofacetEnergy::at_level(const Roughness& roughness, int level) const {
+    if (levels_ == 1) return microfacets(roughness, 1);
+    const float t = static_cast<float>(level) / static_cast<float>(levels_ - 1);
+    // Instead of the perfectly smooth surface at level 0 one that is almost so: the limit of rough ones.
+    const float scale = max_of(t, 0.01f);
+    return clamped(alphas(roughness, roughness.squared ? scale : scale * scale), t);
+}
+
+template <class Albedo>
+void MicrofacetEnergy::fill(const Roughness& roughness, const Albedo& albedo) {
+    loss_.reserve(size_t(levels_) * size_t(azimuths_) * kPolar);
+    for (int level = 0; level < levels_; ++level) {
+        const Microfacets m = at_level(roughness, level);
+        for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
+            for (int polar = 0; polar < kPolar; ++polar) {
+                const double c = cosine_from_polar(static_cast<double>(polar) / (kPolar - 1));
+                const double q = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
+                const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), unstretched(m.ggx(), max_of(c, 1e-6), q));
+                loss_.push_back(static_cast<float>(max_of(lost, 0.0)));
+            }
+    }
+    // The mean of what the table says, so that what is added to it makes it whole.
+    for (int level = 0; level < levels_; ++level) {
+        const Microfacets m = at_level(roughness, level);
+        constexpr int kSteps = 256;
+        const int turns = azimuths_ == 1 ? 1 : 64;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < turns; ++j) {
+                const double mu = (i + 0.5) / kSteps, s = std::sqrt((1 - mu) * (1 + mu));
+                const double phi = std::numbers::pi / 2 * (j + 0.5) / turns;
+                const Vec3d w{s * math::cos(phi), s * math::sin(phi), mu};
+                sum += 2 * mu * loss(m, w) / (kSteps * turns);
+            }
+        mean_.push_back(static_cast<float>(sum));
+    }
+}
+
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Roughness& roughness) {
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness));
+    out->fill(roughness, reflecting_albedo);
+    return out;
+}
+
+double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w) const noexcept {
+    if (m.smooth()) return 0;
+    const double x = m.alpha_x * w.x, y = m.alpha_y * w.y, z = w.z;
+    const double across = x * x + y * y;
+    const Cubic l(m.level, levels_), a(across > 0 ? y * y / across : 0, azimuths_),
+        p(polar_from_cosine(z / std::sqrt(across + z * z)), kPolar);
+    double sum = 0;
+    for (int i = 0; i < l.count; ++i)
+        for (int j = 0; j < a.count; ++j) {
+            const float* row = loss_.data() + ((l.first + i) * azimuths_ + a.first + j) * kPolar + p.first;
+            double inner = 0;
+            for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
+            sum += l.w[size_t(i)] * a.w[size_t(j)] * inner;
+        }
+    return clamp_to(sum, 0.0, 1.0);
+}
+
+double MicrofacetEnergy::mean_loss(const Microfacets& m) const noexcept {
+    const Cubic l(m.level, levels_);
+    double sum = 0;
+    for (int i = 0; i < l.count; ++i) sum += l.w[size_t(i)] * mean_[size_t(l.first + i)];
+    return clamp_to(sum, 0.0, 1.0);
+}
+
+WideLobe::WideLobe(const Microfacets& m)
+    : alpha2(static_cast<double>(m.alpha_x) * m.alpha_y), log_range(math::log(1 + 1 / alpha2)) {}
+
+Vec3d WideLobe::sample(Vec2 u) const {
+    const double mu2 = alpha2 * (math::exp(warp::cell_middle(u.x) * log_range) - 1);
+    const double phi = 2 * std::numbers::pi * warp::cell_middle(u.y), s = std::sqrt(max_of(1 - mu2, 0.0));
+    return {s * math::cos(phi), s * math::sin(phi), std::sqrt(mu2)};
+}
+
+double WideLobe::pdf(double cosine) const {
+    return cosine / (std::numbers::pi * (cosine * cosine + alpha2) * log_range);
+}
+
+}  // namespace steradian

@@ -1,0 +1,120 @@
+#include "shading/material_cases.h"
+
+#include <cmath>
+
+#include "shading/world.h"
+
+namespace steradian::test {
+namespace {
+
+Roughness rough(float x, float y) {
+    Roughness r;
+    r.value = {x, y};
+    r.squared = false;
+    return r;
+}
+
+std::string number(float x) {
+    std::string s = std::to_string(x);
+    return s.substr(0, s.find_last_not_of('0') + 1);
+}
+
+void add_conductors(std::vector<MaterialCase>& out, TextureId white, TextureId orange) {
+    const auto conductor = [&](std::string name, TextureId color, Roughness roughness, bool lossless) {
+        const float peak = std::min(roughness.value.x, roughness.value.y);
+        ConductorMaterial m{SchlickReflectance{color, {1, 1, 1}}, roughness};
+        out.push_back({"conductor " + std::move(name), m, lossless, peak > 0 ? peak : 1});
+    };
+    conductor("white smooth", white, rough(0, 0), true);
+    for (const float alpha : {1e-4f, 1e-3f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f})
+        conductor("white alpha " + number(alpha), white, rough(alpha, alpha), true);
+    conductor("white alpha 0.05 0.4", white, rough(0.05f, 0.4f), true);
+    conductor("white alpha 1 0.1", white, rough(1, 0.1f), true);
+    conductor("orange alpha 0.5", orange, rough(0.5f, 0.5f), false);
+    out.push_back({"conductor gold alpha 0.2", ConductorMaterial{*metal_index("gold"), rough(0.2f, 0.2f)}, false, 0.2f});
+    out.push_back({"conductor chromium smooth", ConductorMaterial{*metal_index("chromium"), {}}, false, 1});
+}
+
+/// A texture that is 0.7 everywhere times a roughness: the tables over levels.
+void add_textured(std::vector<MaterialCase>& out, TextureId white, TextureId level) {
+    Roughness r;
+    r.value = {1, 1};
+    r.texture = level;
+    out.push_back({"conductor textured", ConductorMaterial{SchlickReflectance{white, {1, 1, 1}}, r}, true, 0.49f});
+    r.value = {0.9f, 0.4f};
+    r.squared = false;
+    out.push_back(
+        {"conductor textured anisotropic", ConductorMaterial{SchlickReflectance{white, {1, 1, 1}}, r}, true, 0.28f});
+}
+
+}  // namespace
+
+MaterialScene::MaterialScene() {
+    Scene scene;
+    const auto texture = [&](Rgb value) { return add<TextureId>(scene.textures, Texture{ConstantTexture{value}}); };
+    const TextureId white = texture({1, 1, 1}), orange = texture({0.8f, 0.5f, 0.2f}), level = texture({0.7f, 0, 0});
+    cases_.push_back({"diffuse", DiffuseMaterial{orange, false}});
+    cases_.push_back({"diffuse two-sided white", DiffuseMaterial{white, true}, true});
+    cases_.push_back({"refraction 1.5", RefractionMaterial{1.5f}});
+    cases_.push_back({"refraction 0.6", RefractionMaterial{0.6f}});
+    cases_.push_back({"glass 1.5", GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}}, true});
+    cases_.push_back({"glass 0.7 tinted", GlassMaterial{0.7f, {0.9f, 1, 1}, {1, 0.5f, 1}}});
+    cases_.push_back({"mirror", MirrorMaterial{{1, 1, 1}}, true});
+    add_conductors(cases_, white, orange);
+    add_textured(cases_, white, level);
+
+    const ShapeId shape = add<ShapeId>(scene.shapes, Shape{Rectangle{}});
+    for (const MaterialCase& c : cases_) {
+        const MaterialId id = add<MaterialId>(scene.materials, c.material);
+        add<InstanceId>(scene.instances, Instance{shape, id, {}});
+    }
+    Diagnostics diagnostics;
+    scene_ = std::move(make_shading_scene(std::move(scene), diagnostics)).value();
+}
+
+Bsdf MaterialScene::bsdf(size_t i, Vec3 ng, Vec3 ns) const {
+    SurfacePoint point = receiver({}, ng);
+    point.ns = ns;
+    point.instance = static_cast<uint32_t>(i);
+    return make_bsdf(scene_, point);
+}
+
+const MaterialScene& material_scene() {
+    static const MaterialScene scene;
+    return scene;
+}
+
+std::vector<Normals> normal_pairs() {
+    const Vec3 up = normalize(Vec3{0.1f, 0.9f, -0.3f});
+    return {{up, up}, {up, normalize(up + Vec3{0.5f, 0, 0.2f})}, {{0, 0, -1}, normalize(Vec3{0.9f, 0, -0.5f})}};
+}
+
+Magnifier::Magnifier(Vec3d axis, double scale) : frame_(Frame3d::from_z(normalize(axis))), scale_(scale) {}
+
+Vec3d Magnifier::magnified(Vec3d w) const {
+    const Vec3d l = frame_.to_local(w);
+    const double r = std::sqrt(l.x * l.x + l.y * l.y);
+    if (!(r > 0)) return l;
+    const double t = (l.z > 0 ? r / (1 + l.z) : (1 - l.z) / r) / scale_, s = 2 * t / (1 + t * t);
+    return {l.x / r * s, l.y / r * s, (1 - t) * (1 + t) / (1 + t * t)};
+}
+
+Vec3d Magnifier::original(Vec3d m) const {
+    const double r = std::sqrt(m.x * m.x + m.y * m.y);
+    if (!(r > 0)) return frame_.to_world(m);
+    const double t = (m.z > 0 ? r / (1 + m.z) : (1 - m.z) / r) * scale_, s = 2 * t / (1 + t * t);
+    return frame_.to_world({m.x / r * s, m.y / r * s, (1 - t) * (1 + t) / (1 + t * t)});
+}
+
+double Magnifier::solid_angle_ratio(Vec3d m) const {
+    // dω = 4 t dt dφ / (1 + t²)², t' = t / scale; 1 + t'² = 2 / (1 + cos θ').
+    const double t2 = (1 - m.z) / max_of(1 + m.z, 1e-300), a = (1 + t2) / (1 + scale_ * scale_ * t2);
+    return scale_ * scale_ * a * a;
+}
+
+Vec3d mirrored(Vec3 wo, Vec3 n) {
+    const Vec3d o = wo, z = n;
+    return z * (2 * dot(o, z)) - o;
+}
+
+}  // namespace steradian::test
