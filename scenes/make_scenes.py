@@ -325,6 +325,38 @@ def metals():
     })
 
 
+def frosted():
+    """Glass from clear to frosted, and a pane in front of coloured clay balls."""
+    materials = {
+        "floor": {"type": "diffuse", "reflectance": {"type": "checkerboard", "color0": 0.7, "color1": [0.2, 0.3, 0.35],
+                                                     "scale": 32}},
+        "pane": {"type": "thin_glass", "transmittance": [0.85, 0.95, 0.9]},
+        "lamp": {"type": "diffuse", "reflectance": 0},
+    }
+    objects = [{"type": "rectangle", "half_u": [8, 0, 0], "half_v": [0, 0, -8], "material": "floor"}]
+    for i, roughness in enumerate((0, 0.2, 0.35, 0.5, 0.75)):
+        materials[f"glass{i}"] = {"type": "glass", "roughness": roughness}
+        objects.append({"type": "sphere", "center": [1.2 * (i - 2), 0.5, 0], "radius": 0.5, "material": f"glass{i}"})
+    for i, (color, roughness) in enumerate((([0.7, 0.2, 0.12], 0), ([0.7, 0.2, 0.12], 1))):
+        materials[f"clay{i}"] = {"type": "diffuse", "reflectance": color, "roughness": roughness}
+        objects.append({"type": "sphere", "center": [2.2 * i - 1.1, 0.7, -2], "radius": 0.7, "material": f"clay{i}"})
+    objects.append({"type": "rectangle", "center": [-1.1, 0.9, -1.1], "half_u": [0.9, 0, 0.1], "half_v": [0, 0.9, 0],
+                    "material": "pane"})
+    objects.append({"type": "rectangle", "center": [-2.5, 4, 3], "half_u": [0.8, 0, 0], "half_v": [0, 0, 0.8],
+                    "material": "lamp", "light": {"radiance": [14, 13, 12], "light_samples": 2}})
+    dump("frosted.json", {
+        "$schema": "../docs/scene.schema.json",
+        "version": 1,
+        "comment": "Glass from clear to frosted, a window pane, smooth and rough clay.",
+        "render": {"integrator": "direct", "max_depth": 8, "spp": 64},
+        "film": {"resolution": [720, 405]},
+        "camera": {"position": [0, 2.2, 7.5], "look_at": [0, 0.6, -0.7], "vertical_fov": 27},
+        "materials": materials,
+        "objects": objects,
+        "lights": [{"type": "environment", "radiance": [0.6, 0.7, 0.9], "light_samples": 2}],
+    })
+
+
 if __name__ == "__main__":
     cornell()
     spheres()
@@ -333,3 +365,4 @@ if __name__ == "__main__":
     knot("knot.ply")
     hero()
     metals()
+    frosted()

@@ -84,10 +84,12 @@ struct SchlickReflectance {
     Rgb grazing{1, 1, 1};
 };
 
-/// Lambert, f = reflectance / π. One-sided with respect to the shading normal unless two_sided.
+/// Lambert, f = reflectance / π, or with a roughness the energy-preserving model of Oren and Nayar (EON). One-sided
+/// with respect to the shading normal unless two_sided.
 struct DiffuseMaterial {
     TextureId reflectance{};
     bool two_sided = false;
+    float roughness = 0;  ///< in [0, 1], 0: Lambert
 };
 
 /// Perfect refraction that passes radiance on unchanged; total internal reflection reflects. It never blends.
@@ -95,11 +97,19 @@ struct RefractionMaterial {
     float eta = 1.5f;  ///< index inside over outside, > 0
 };
 
-/// Smooth dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface.
+/// Dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface. Where it is rough,
+/// of microfacets with all bounces between them; an index within 1e-3 of 1 is smooth whatever the roughness.
 struct GlassMaterial {
     float eta = 1.5f;            ///< index inside over outside, > 0
     Rgb reflectance{1, 1, 1};    ///< tint of the reflected part
     Rgb transmittance{1, 1, 1};  ///< tint of the transmitted part
+    Roughness roughness{};
+};
+
+/// A thin sheet of glass as one surface: all reflections inside it are summed, what passes goes straight on.
+struct ThinGlassMaterial {
+    float eta = 1.5f;            ///< index of the sheet over that around it, > 0
+    Rgb transmittance{1, 1, 1};  ///< of the sheet, once through, at any angle; at most 1
 };
 
 /// Perfect mirror, both sides.
@@ -113,7 +123,8 @@ struct ConductorMaterial {
     Roughness roughness;
 };
 
-using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial>;
+using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,
+                              ThinGlassMaterial>;
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 // The complex indices of metals. tools/metals.py computes them from measurements: n and k over the spectrum give the
 // reflectance at every angle, the CIE 1931 observer under D65 its colour in linear Rec. 709 relative to white, and the
-// index of a channel is the one whose reflectance over all angles is nearest to that colour. (Gold's red is brighter than
-// Rec. 709 can say, 1.04, and is the brightest possible.)
+// index of a channel is the one whose reflectance over all angles is nearest to that colour. (Gold's red is brighter
+// than Rec. 709 can say, 1.04, and is the brightest possible.)
 #include <array>
 
 #include "steradian/scene.h"

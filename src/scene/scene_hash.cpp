@@ -51,14 +51,15 @@ private:
     void put(const ConstantTexture& t) { put(t.value); }
     void put(const ImageTexture& t) { put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset); }
     void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset); }
-    void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided); }
+    void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided, m.roughness); }
     void put(const RefractionMaterial& m) { put(m.eta); }
-    void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance); }
+    void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance, m.roughness); }
     void put(const MirrorMaterial& m) { put(m.reflectance); }
     void put(const std::optional<TextureId>& t) { put(t.has_value(), t.value_or(TextureId{})); }
     void put(const Roughness& r) { put(r.value, r.squared, r.texture); }
     void put(const ComplexIndex& i) { put(i.n, i.k); }
     void put(const SchlickReflectance& r) { put(r.normal, r.grazing); }
+    void put(const ThinGlassMaterial& m) { put(m.eta, m.transmittance); }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness); }
     template <class T>
     void raw(const std::vector<T>& values) {

@@ -81,13 +81,23 @@ private:
         color(t.odd, "a colour must be finite and not negative");
         uv_transform(t.scale, t.offset);
     }
-    void check(const DiffuseMaterial& m) const { refers(m.reflectance, s_.textures, "texture"); }
+    void check(const DiffuseMaterial& m) const {
+        refers(m.reflectance, s_.textures, "texture");
+        require(m.roughness >= 0 && m.roughness <= 1, "the roughness must be between 0 and 1");
+    }
     void eta(float value) const { require(value >= 1e-3f && value <= 1e3f, "eta must be between 0.001 and 1000"); }
     void check(const RefractionMaterial& m) const { eta(m.eta); }
     void check(const GlassMaterial& m) const {
         eta(m.eta);
         color(m.reflectance, "the reflectance must be finite and not negative");
         color(m.transmittance, "the transmittance must be finite and not negative");
+        check(m.roughness);
+    }
+    void check(const ThinGlassMaterial& m) const {
+        eta(m.eta);
+        const Rgb t = m.transmittance;
+        color(t, "the transmittance must be finite and not negative");
+        require(t.r <= 1 && t.g <= 1 && t.b <= 1, "the transmittance of a thin sheet must be at most 1");
     }
     void check(const MirrorMaterial& m) const {
         color(m.reflectance, "the reflectance must be finite and not negative");

@@ -5,6 +5,8 @@
 #include "shading/bsdf/glass.h"
 #include "shading/bsdf/mirror.h"
 #include "shading/bsdf/refraction.h"
+#include "shading/bsdf/rough_glass.h"
+#include "shading/bsdf/thin_glass.h"
 #include "shading/shading_scene.h"
 
 namespace steradian {

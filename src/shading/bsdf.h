@@ -17,6 +17,7 @@ namespace steradian {
 struct DiffuseBsdf {
     Rgb reflectance;
     bool two_sided = false;
+    float roughness = 0;
 };
 struct RefractionBsdf {
     float eta = 1.5f;
@@ -37,9 +38,22 @@ struct ConductorBsdf {
     Microfacets facets;
     const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
 };
+struct RoughGlassBsdf {
+    float eta = 1.5f;
+    Rgb reflectance, transmittance;
+    Microfacets facets{0.1f, 0.1f};            ///< not smooth
+    const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
+};
+struct ThinGlassBsdf {
+    float eta = 1.5f;
+    Rgb transmittance;
+};
+
+using Lobe =
+    std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf, ThinGlassBsdf>;
 
 struct Bsdf {
-    std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf> lobe;
+    Lobe lobe;
     Vec3 ng;
     Frame frame;  ///< z is the shading normal, x the direction of u where the lobe has one
 };

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 
+#include "shading/bsdf/specular.h"
+#include "shading/fresnel.h"
+
 namespace steradian {
 namespace {
 
 constexpr int kLevels = 16, kAzimuths = 9, kPolar = 32;
-constexpr int kPsiNodes = 12;   // for each quarter turn
+constexpr int kPsiNodes = 12;  // for each quarter turn
 constexpr int kSlopeNodes = 64;
 
 /// Nodes and weights of Gauss and Legendre on [0, 1], the roots found by Newton's method.
@@ -61,10 +64,12 @@ Vec3d unstretched(const Ggx& ggx, double c, double q) {
     return normalize(Vec3d{s * std::sqrt(1 - q) / ggx.ax, s * std::sqrt(q) / ggx.ay, c});
 }
 
-/// ∫ G2 D / (4 o.z) over all reflected directions, as an integral over microfacet normals: with slopes m (αx cos ψ,
-/// αy sin ψ), m = tan β, the density of normals is 2 sin β cos β dβ dψ / 2π. For each ψ those that reflect upwards are
-/// an interval that begins at 0. The azimuth is divided where o · h changes its behaviour.
-double reflecting_albedo(const Ggx& ggx, Vec3d o) {
+/// ∫ G2 (o · h) D / o.z over microfacet normals h, times the part `bounce(h, o · h)` that leaves. With slopes m (αx cos
+/// ψ, αy sin ψ), m = tan β, the density of normals is 2 sin β cos β dβ dψ / 2π. For each ψ those that reflect upwards
+/// are an interval that begins at 0, those that are seen from o a longer one; the integral is divided there, and in
+/// azimuth where o · h changes its behaviour.
+template <class Bounce>
+double integrate_facets(const Ggx& ggx, Vec3d o, bool beyond_reflection, const Bounce& bounce) {
     static const GaussLegendre<kPsiNodes> psi_rule;
     static const GaussLegendre<kSlopeNodes> slope_rule;
     const double psi_o = math::atan2(ggx.ay * o.y, ggx.ax * o.x), quarter = std::numbers::pi / 2;
@@ -75,22 +80,45 @@ double reflecting_albedo(const Ggx& ggx, Vec3d o) {
             const double psi = psi_o + quarter * (q + psi_rule.x[i]);
             const double sx = ggx.ax * math::cos(psi), sy = ggx.ay * math::sin(psi);
             const double a = std::sqrt(sx * sx + sy * sy), along = (o.x * sx + o.y * sy) / a;
-            // The reflected direction rises while θ_h < (90° + the angle of o in this plane) / 2.
-            const double steepest = (quarter + math::atan2(along, o.z)) / 2;
-            const double beta_max = math::atan2(math::sin(steepest), a * math::cos(steepest));
-            double inner = 0;
-            for (size_t j = 0; j < slope_rule.x.size(); ++j) {
-                const double beta = beta_max * slope_rule.x[j], sb = math::sin(beta), cb = math::cos(beta);
-                const double m = sb / cb, hz = 1 / std::sqrt(1 + m * m * a * a);
-                const Vec3d h{m * sx * hz, m * sy * hz, hz};
-                const double oh = dot(o, h);
-                const Vec3d wi = h * (2 * oh) - o;
-                if (!(oh > 0 && wi.z > 0)) continue;
-                inner += slope_rule.w[j] * 2 * sb * cb * ggx.masking_over_cosine(o, wi) * oh / hz;
+            // The angle of o in this plane, and of the facets that reflect and that are seen at the most.
+            const double angle = math::atan2(along, o.z), steepest = (quarter + angle) / 2;
+            const double last = min_of(quarter, quarter + angle);
+            const double ends[] = {0, math::atan2(math::sin(steepest), a * math::cos(steepest)),
+                                   math::atan2(math::sin(last), a * math::cos(last))};
+            for (size_t part = 0; part < (beyond_reflection ? 2u : 1u); ++part) {
+                double inner = 0;
+                for (size_t j = 0; j < slope_rule.x.size(); ++j) {
+                    const double beta = ends[part] + (ends[part + 1] - ends[part]) * slope_rule.x[j];
+                    const double sb = math::sin(beta), cb = math::cos(beta);
+                    const double m = sb / cb, hz = 1 / std::sqrt(1 + m * m * a * a);
+                    const Vec3d h{m * sx * hz, m * sy * hz, hz};
+                    const double oh = dot(o, h);
+                    if (oh > 0) inner += slope_rule.w[j] * 2 * sb * cb * bounce(h, oh) * oh / hz;
+                }
+                sum += psi_rule.w[i] / (symmetric ? 2 : 4) * (ends[part + 1] - ends[part]) * inner;
             }
-            sum += psi_rule.w[i] / (symmetric ? 2 : 4) * beta_max * inner;
         }
     return sum;
+}
+
+double reflecting_albedo(const Ggx& ggx, Vec3d o) {
+    return integrate_facets(ggx, o, false, [&](Vec3d h, double) {
+        const Vec3d wi = reflect(o, h);
+        return wi.z > 0 ? ggx.masking_over_cosine(o, wi) : 0;
+    });
+}
+
+/// eta: the far side's index over that of the side of o.
+double transmitting_albedo(const Ggx& ggx, Vec3d o, double eta) {
+    return integrate_facets(ggx, o, true, [&](Vec3d h, double oh) {
+        const double reflectance = fresnel_dielectric(oh, eta);
+        const Vec3d reflected = reflect(o, h);
+        const std::optional<Vec3d> refracted = refract(o, h, eta);
+        double leaves = 0;
+        if (reflected.z > 0) leaves += reflectance * ggx.masking_over_cosine(o, reflected);
+        if (refracted && refracted->z < 0) leaves += (1 - reflectance) * ggx.masking_over_cosine(o, *refracted);
+        return leaves;
+    });
 }
 
 Vec2 alphas(const Roughness& roughness, float scale) {
@@ -114,8 +142,10 @@ Microfacets microfacets(const Roughness& roughness, float texture) noexcept {
     return clamped(alphas(roughness, scale), roughness.squared ? scale : std::sqrt(scale));
 }
 
-MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness)
-    : levels_(roughness.texture ? kLevels : 1), azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths) {}
+MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness, int sides)
+    : sides_(sides),
+      levels_(roughness.texture ? kLevels : 1),
+      azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths) {}
 
 Microfacets MicrofacetEnergy::at_level(const Roughness& roughness, int level) const {
     if (levels_ == 1) return microfacets(roughness, 1);
@@ -126,8 +156,8 @@ Microfacets MicrofacetEnergy::at_level(const Roughness& roughness, int level) co
 }
 
 template <class Albedo>
-void MicrofacetEnergy::fill(const Roughness& roughness, const Albedo& albedo) {
-    loss_.reserve(size_t(levels_) * size_t(azimuths_) * kPolar);
+void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo& albedo) {
+    loss_.reserve(size_t(sides_) * size_t(levels_) * size_t(azimuths_) * kPolar);
     for (int level = 0; level < levels_; ++level) {
         const Microfacets m = at_level(roughness, level);
         for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
@@ -149,19 +179,28 @@ void MicrofacetEnergy::fill(const Roughness& roughness, const Albedo& albedo) {
                 const double mu = (i + 0.5) / kSteps, s = std::sqrt((1 - mu) * (1 + mu));
                 const double phi = std::numbers::pi / 2 * (j + 0.5) / turns;
                 const Vec3d w{s * math::cos(phi), s * math::sin(phi), mu};
-                sum += 2 * mu * loss(m, w) / (kSteps * turns);
+                sum += 2 * mu * loss(m, w, side) / (kSteps * turns);
             }
         mean_.push_back(static_cast<float>(sum));
     }
 }
 
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Roughness& roughness) {
-    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness));
-    out->fill(roughness, reflecting_albedo);
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
+    out->fill(roughness, Side::outside, reflecting_albedo);
     return out;
 }
 
-double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w) const noexcept {
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Roughness& roughness, double eta) {
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 2));
+    for (const Side side : {Side::outside, Side::inside})
+        out->fill(roughness, side, [&](const Ggx& ggx, Vec3d o) {
+            return transmitting_albedo(ggx, o, side == Side::outside ? eta : 1 / eta);
+        });
+    return out;
+}
+
+double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side) const noexcept {
     if (m.smooth()) return 0;
     const double x = m.alpha_x * w.x, y = m.alpha_y * w.y, z = w.z;
     const double across = x * x + y * y;
@@ -170,7 +209,8 @@ double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w) const noexcept {
     double sum = 0;
     for (int i = 0; i < l.count; ++i)
         for (int j = 0; j < a.count; ++j) {
-            const float* row = loss_.data() + ((l.first + i) * azimuths_ + a.first + j) * kPolar + p.first;
+            const float* row =
+                loss_.data() + ((int(side) * levels_ + l.first + i) * azimuths_ + a.first + j) * kPolar + p.first;
             double inner = 0;
             for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
             sum += l.w[size_t(i)] * a.w[size_t(j)] * inner;
@@ -178,10 +218,10 @@ double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w) const noexcept {
     return clamp_to(sum, 0.0, 1.0);
 }
 
-double MicrofacetEnergy::mean_loss(const Microfacets& m) const noexcept {
+double MicrofacetEnergy::mean_loss(const Microfacets& m, Side side) const noexcept {
     const Cubic l(m.level, levels_);
     double sum = 0;
-    for (int i = 0; i < l.count; ++i) sum += l.w[size_t(i)] * mean_[size_t(l.first + i)];
+    for (int i = 0; i < l.count; ++i) sum += l.w[size_t(i)] * mean_[size_t(int(side) * levels_ + l.first + i)];
     return clamp_to(sum, 0.0, 1.0);
 }
 

@@ -200,9 +200,13 @@ public:
     explicit MaterialBuilder(ShadingScene& scene) : scene_(scene) {}
 
     void operator()(const ConductorMaterial& m) {
-        data().energy = reflecting(m.roughness);
+        data().energy = energy(m.roughness, 0);
         if (const auto* complex = std::get_if<ComplexIndex>(&m.reflectance))
             data().mean_fresnel = mean_fresnel_conductor(*complex);
+    }
+    void operator()(const GlassMaterial& m) {
+        const bool visible = std::fabs(m.eta - 1) >= 1e-3f;  // nearer to 1 refraction is lost in the rounding to float
+        if (visible) data().energy = energy(m.roughness, m.eta);
     }
     template <class Other>
     void operator()(const Other&) {}
@@ -210,17 +214,17 @@ public:
 private:
     ShadingScene::MaterialData& data() { return scene_.materials.back(); }
 
-    std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& r) {
+    /// `eta` 0 for metals.
+    std::shared_ptr<const MicrofacetEnergy> energy(const Roughness& r, float eta) {
         if (r.value == Vec2{0, 0}) return nullptr;
-        const Key key{r.value.x, r.value.y, r.squared, r.texture.has_value()};
-        auto& known = reflecting_[key];
-        if (!known) known = MicrofacetEnergy::reflecting(r);
+        auto& known = known_[Key{r.value.x, r.value.y, r.squared, r.texture.has_value(), eta}];
+        if (!known) known = eta > 0 ? MicrofacetEnergy::transmitting(r, eta) : MicrofacetEnergy::reflecting(r);
         return known;
     }
 
-    using Key = std::tuple<float, float, bool, bool>;
+    using Key = std::tuple<float, float, bool, bool, float>;
     ShadingScene& scene_;
-    std::map<Key, std::shared_ptr<const MicrofacetEnergy>> reflecting_;
+    std::map<Key, std::shared_ptr<const MicrofacetEnergy>> known_;
 };
 
 /// Image textures only: the environment counts its own.

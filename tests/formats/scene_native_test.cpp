@@ -92,7 +92,7 @@ TEST(NativeScene, Materials) {
         load_good(scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}}, "materials": {
         "by_name": {"type": "diffuse", "reflectance": "t"},
         "inline": {"type": "diffuse", "reflectance": {"type": "constant", "color": 0.2}, "two_sided": true},
-        "color": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3]},
+        "color": {"type": "diffuse", "reflectance": [0.1, 0.2, 0.3], "roughness": 0.5},
         "refraction": {"type": "refraction", "eta": 2}, "refraction0": {"type": "refraction"},
         "glass": {"type": "glass", "eta": 1.33, "reflectance": 0.5, "transmittance": [1, 0.5, 0.25]}, "glass0": {"type": "glass"},
         "mirror": {"type": "mirror", "reflectance": 0.9}, "mirror0": {"type": "mirror"}})"));
@@ -107,6 +107,8 @@ TEST(NativeScene, Materials) {
     EXPECT_EQ(constant(m[1]), (Rgb{0.2f, 0.2f, 0.2f}));
     EXPECT_TRUE(std::get<DiffuseMaterial>(m[1]).two_sided);
     EXPECT_EQ(constant(m[2]), (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(std::get<DiffuseMaterial>(m[1]).roughness, 0);
+    EXPECT_EQ(std::get<DiffuseMaterial>(m[2]).roughness, 0.5f);
     EXPECT_EQ(std::get<RefractionMaterial>(m[3]).eta, 2);
     EXPECT_EQ(std::get<RefractionMaterial>(m[4]).eta, 1.5f);
     const auto& glass = std::get<GlassMaterial>(m[5]);
@@ -144,6 +146,17 @@ TEST(NativeScene, Conductors) {
     EXPECT_EQ(std::get<SchlickReflectance>(m[3].reflectance).grazing, (Rgb{0.5f, 0.5f, 0.5f}));
     EXPECT_EQ(m[3].roughness.value, (Vec2{1, 1}));
     EXPECT_EQ(m[3].roughness.texture, TextureId{0});
+}
+
+TEST(NativeScene, RoughAndThinGlass) {
+    const LoadedScene loaded = load_good(scene_with(R"("materials": {
+        "frosted": {"type": "glass", "roughness": 0.4}, "clear": {"type": "glass"},
+        "pane": {"type": "thin_glass", "eta": 1.6, "transmittance": [0.9, 1, 0.8]}})"));
+    const auto& m = loaded.scene.materials;
+    EXPECT_EQ(std::get<GlassMaterial>(m[0]).roughness.value, (Vec2{0.4f, 0.4f}));
+    EXPECT_EQ(std::get<GlassMaterial>(m[1]).roughness.value, (Vec2{0, 0}));
+    EXPECT_EQ(std::get<ThinGlassMaterial>(m[2]).eta, 1.6f);
+    EXPECT_EQ(std::get<ThinGlassMaterial>(m[2]).transmittance, (Rgb{0.9f, 1, 0.8f}));
 }
 
 TEST(NativeScene, ReflectanceAboveOneIsWarnedAboutOnce) {

@@ -21,6 +21,7 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(MirrorMaterial{}));
     add<MaterialId>(s.materials, Material(ConductorMaterial{ComplexIndex{}, {}}));
     add<MaterialId>(s.materials, Material(ConductorMaterial{SchlickReflectance{}, {}}));
+    add<MaterialId>(s.materials, Material(ThinGlassMaterial{}));
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
@@ -49,6 +50,7 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<CheckerTexture>(s.textures[2]).scale.x = 2; },
         [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).two_sided = true; },
         [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{1}; },
+        [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).roughness = 0.5f; },
         [](Scene& s) { std::get<RefractionMaterial>(s.materials[1]).eta = 2; },
         [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).transmittance.r = 0.5f; },
         [](Scene& s) { std::get<MirrorMaterial>(s.materials[3]).reflectance.r = 0.5f; },
@@ -60,6 +62,9 @@ std::vector<Change> changes() {
         [](Scene& s) {
             std::get<SchlickReflectance>(std::get<ConductorMaterial>(s.materials[5]).reflectance).grazing.g = 0;
         },
+        [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).roughness.value.x = 0.5f; },
+        [](Scene& s) { std::get<ThinGlassMaterial>(s.materials[6]).eta = 2; },
+        [](Scene& s) { std::get<ThinGlassMaterial>(s.materials[6]).transmittance.b = 0.5f; },
         [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },

@@ -52,6 +52,8 @@ INSTANTIATE_TEST_SUITE_P(
                           [](Scene& s) {
                               s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, kNan}, true, std::nullopt}};
                           }},
+                    Fault{"the roughness must be between 0 and 1",
+                          [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).roughness = 1.5f; }},
                     Fault{"refers to texture 1",
                           [](Scene& s) {
                               s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};

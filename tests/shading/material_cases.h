@@ -16,6 +16,8 @@ struct MaterialCase {
     bool lossless = false;  ///< what arrives leaves again: in a white furnace each side shows 1
     /// The sine of the half angle of the narrowest peak, roughly; 1 where there is none.
     float peak = 1;
+    float eta = 1;  ///< index inside over outside
+    double energy_error = 1e-3;
 };
 
 /// Cases of one scene; a Bsdf refers to its tables.
@@ -56,5 +58,8 @@ private:
 
 /// Where the highlight of a flat mirror is seen.
 Vec3d mirrored(Vec3 wo, Vec3 n);
+/// Where one looks through a flat boundary of index eta on the side that n does not point to; straight on where not at
+/// all.
+Vec3d refracted(Vec3 wo, Vec3 n, double eta);
 
 }  // namespace steradian::test

@@ -4,6 +4,7 @@ namespace steradian::scene_json {
 namespace {
 
 constexpr Range kTextureScale{-1e6, 1e6};
+constexpr Range kUnit{0, 1};
 
 std::string with_name(std::string_view what, const std::string& name) {
     return name.empty() ? std::string(what) : std::string(what) + " " + quoted(name);
@@ -100,7 +101,6 @@ TextureId NativeLoader::read_reflectance(ObjectReader& material) {
 }
 
 Roughness NativeLoader::read_roughness(ObjectReader& material) {
-    static constexpr Range kUnit{0, 1};
     Roughness out;
     const auto alpha = material.find("alpha"), roughness = material.find("roughness");
     if (alpha && roughness)
@@ -157,6 +157,7 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             DiffuseMaterial diffuse;
             diffuse.reflectance = read_reflectance(reader);
             diffuse.two_sided = reader.boolean_or("two_sided", false);
+            diffuse.roughness = reader.number_or("roughness", 0, kUnit);
             material = diffuse;
             break;
         }
@@ -168,15 +169,23 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             glass.eta = reader.number_or("eta", glass.eta, kEta);
             glass.reflectance = tint("reflectance");
             glass.transmittance = tint("transmittance");
+            glass.roughness = read_roughness(reader);
             material = glass;
             break;
         }
         case 3:
             material = MirrorMaterial{tint("reflectance")};
             break;
-        default:
+        case 4:
             material = read_conductor(reader);
             break;
+        default: {
+            ThinGlassMaterial sheet;
+            sheet.eta = reader.number_or("eta", sheet.eta, kEta);
+            sheet.transmittance = reader.color_or("transmittance", sheet.transmittance, kUnit);
+            material = sheet;
+            break;
+        }
     }
     reader.finish();
     return assets_.add_material(material, name);

@@ -1,12 +1,21 @@
-// A smooth boundary between two dielectrics.
+// A smooth boundary between two dielectrics, and the material that may be rough.
 #pragma once
 
 #include "shading/bsdf/specular.h"
+#include "shading/texture.h"
 
 namespace steradian {
 
-inline GlassBsdf make_lobe(const GlassMaterial& material, const LobeContext&) {
-    return {material.eta, material.reflectance, material.transmittance};
+inline Lobe make_lobe(const GlassMaterial& material, const LobeContext& context) {
+    if (context.material.energy) {
+        const Roughness& roughness = material.roughness;
+        const auto read = [&](TextureId id) { return eval_texture(context.scene.scene, id, context.point.uv).r; };
+        const Microfacets facets = microfacets(roughness, roughness.texture ? read(*roughness.texture) : 1);
+        if (!facets.smooth())
+            return RoughGlassBsdf{material.eta, material.reflectance, material.transmittance, facets,
+                                  context.material.energy.get()};
+    }
+    return GlassBsdf{material.eta, material.reflectance, material.transmittance};
 }
 
 inline bool lobe_is_specular(const GlassBsdf&) { return true; }

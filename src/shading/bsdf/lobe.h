@@ -1,5 +1,6 @@
 // What the lobes share. Each kind of lobe is one file with these functions, found by overloading:
-//   Lobe make_lobe(const LobeMaterial&, const LobeContext&);
+//   Lobe make_lobe(const SomeMaterial&, const LobeContext&);   (or one kind of lobe)
+// and for its kind of lobe
 //   bool lobe_is_specular(const Lobe&);
 //   BsdfEval eval_lobe(const Lobe&, const LobeGeometry&, Vec3 wo, Vec3 wi);
 //   std::optional<BsdfSample> sample_lobe(const Lobe&, const LobeGeometry&, Vec3 wo, float uc, Vec2 u);

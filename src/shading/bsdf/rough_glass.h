@@ -18,9 +18,9 @@ inline bool lobe_has_direction(const RoughGlassBsdf& lobe) { return lobe.facets.
 
 /// What the wide lobe needs to know, seen from a side: eta is the index of the far side over that of the near one.
 struct RoughGlassLosses {
-    double eta = 1, lost = 0;          ///< lost: of the light from wo; also the probability of the wide lobe
-    double near = 0, far = 0;          ///< D̄ of the two sides
-    double reflected_share = 1;        ///< of the wide lobe
+    double eta = 1, lost = 0;    ///< lost: of the light from wo; also the probability of the wide lobe
+    double near = 0, far = 0;    ///< D̄ of the two sides
+    double reflected_share = 1;  ///< of the wide lobe
     Side near_side = Side::outside, far_side = Side::inside;
 };
 
@@ -69,7 +69,8 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         const double share = reflected ? l.reflected_share : 1 - l.reflected_share;
         const double cosine = std::fabs(wi.z);
         const Side side = reflected ? l.near_side : l.far_side;
-        const double from_wi = lobe.energy->loss(lobe.facets, {wi.x, wi.y, cosine}, side) / (reflected ? l.near : l.far);
+        const double from_wi =
+            lobe.energy->loss(lobe.facets, {wi.x, wi.y, cosine}, side) / (reflected ? l.near : l.far);
         f_cos += l.lost * share * from_wi * cosine / std::numbers::pi;
         pdf += l.lost * share * WideLobe(lobe.facets).pdf(cosine);
     }

@@ -16,11 +16,13 @@ inline BsdfEval eval_lobe(const ThinGlassBsdf&, const LobeGeometry&, Vec3, Vec3)
 
 /// With R of one surface and t once through: reflected R + (1 - R)² R t² (1 + R² t² + …), passed (1 - R)² t (1 + R² t²
 /// + …). The choice is that of clear glass, 2R / (1 + R), and the weights make up for the tint.
-inline std::optional<BsdfSample> sample_lobe(const ThinGlassBsdf& lobe, const LobeGeometry& g, Vec3 wo, float uc, Vec2) {
+inline std::optional<BsdfSample> sample_lobe(const ThinGlassBsdf& lobe, const LobeGeometry& g, Vec3 wo, float uc,
+                                             Vec2) {
     const auto surface = Interface::seen_from(g, wo);
     if (!surface) return std::nullopt;
     // Below 1 the sheet is a film of air, which is symmetric as well.
-    const double r = fresnel_dielectric(min_of(dot(Vec3d(wo), surface->ns), 1.0), lobe.eta), reflects = 2 * r / (1 + r);
+    const double cosine = dot(Vec3d(wo), surface->ns), eta = lobe.eta;
+    const double r = fresnel_dielectric(cosine, eta), reflects = 2 * r / (1 + r);
     Rgb reflected, passed;
     for (int c = 0; c < 3; ++c) {
         const double t = lobe.transmittance[c], series = r < 1 ? (1 - r) * (1 - r) / (1 - r * r * t * t) : 0;
