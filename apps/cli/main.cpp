@@ -25,6 +25,7 @@ constexpr const char* kExamples =
     "  steradian render scene.json -o picture.png            render with the settings of the scene\n"
     "  steradian render model.obj --spp 256 --size 1920x1080 a bare model gets a camera and a studio light\n"
     "  steradian render scene.json -o a.exr -o a.png --json  two files, statistics on standard output\n"
+    "  steradian replay scene.json --pixel 12,34 --sample 5  how one sample of one pixel came to its value\n"
     "  steradian info scene.json                             what is in a scene, or in a picture\n"
     "  steradian convert a.exr a.png --view agx              from linear light to something to look at\n"
     "  steradian diff a.exr b.exr                            how far two pictures are apart\n"
@@ -75,6 +76,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     Action action;
     add_render(app, action);
+    add_replay(app, action);
     add_info(app, action);
     add_convert(app, action);
     add_diff(app, action);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "steradian/image.h"
 #include "steradian/result.h"
@@ -42,8 +43,8 @@ struct RenderProgress {
     double seconds = 0;  ///< since the job started
 };
 
-/// A camera sample that was not a finite, non-negative radiance. It counted as 0.
-struct BadSample {
+/// A camera sample and its radiance, before the filter's weight.
+struct PixelSample {
     uint32_t x = 0, y = 0;
     uint64_t sample = 0;
     Rgb value;
@@ -51,10 +52,17 @@ struct BadSample {
 
 struct RenderStatistics {
     uint64_t samples = 0;
-    uint64_t camera_rays = 0, specular_rays = 0, shadow_rays = 0;
+    uint64_t camera_rays = 0;
+    uint64_t bounce_rays = 0;  ///< those that carry a path on
+    uint64_t shadow_rays = 0;
     uint64_t bad_samples = 0;
-    std::optional<BadSample> first_bad_sample;  ///< the one with the smallest (sample, y, x)
-    uint32_t threads = 0;                       ///< how many really took part
+    /// Of those that were not finite, non-negative radiances and counted as 0, the one with the smallest (sample, y,
+    /// x).
+    std::optional<PixelSample> first_bad_sample;
+    /// As many as Execution::fireflies asks for: those of the largest luminance, and among equals of the smallest
+    /// (sample, y, x). replay() (replay.h) shows where they come from.
+    std::vector<PixelSample> fireflies;
+    uint32_t threads = 0;  ///< how many really took part
     double seconds = 0;
 };
 

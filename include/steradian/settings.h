@@ -8,7 +8,11 @@
 
 namespace steradian {
 
-enum class IntegratorKind : uint8_t { direct };
+/// All light; light without detours; ambient occlusion; and what camera rays find, to look for faults in a scene.
+enum class IntegratorKind : uint8_t { path, direct, ao, normals, albedo, uv, depth, primitive };
+/// How `path` finds lights with an extent: by directions that they are asked for and directions that surfaces prefer,
+/// put together by multiple importance sampling, or by one of the two alone (for comparisons; the mean is the same).
+enum class LightSampling : uint8_t { mis, light, bsdf };
 enum class SamplerKind : uint8_t { sobol, independent };
 enum class FilterKind : uint8_t { box, tent, gaussian, mitchell };
 
@@ -30,17 +34,23 @@ struct RenderSettings {
     uint32_t width = 512;
     uint32_t height = 512;
     std::optional<Crop> crop;
-    IntegratorKind integrator = IntegratorKind::direct;
+    IntegratorKind integrator = IntegratorKind::path;
     uint32_t max_depth = 16;          ///< bounces, specular ones too: 0 emission, 1 direct light; at most kMaxDepth
     uint64_t samples_per_pixel = 64;  ///< 1 … kMaxSamplesPerPixel
     SamplerKind sampler = SamplerKind::sobol;
     uint64_t seed = 0;
+    LightSampling light_sampling = LightSampling::mis;
+    uint32_t roulette_depth = 4;  ///< bounces that Russian roulette lets pass; from max_depth on there is none
+    /// Most that one connection to a light adds as indirect light (`path`; 0: no limit). Makes the picture biased.
+    float clamp = 0;
+    float ao_distance = 0;  ///< metres; `ao` counts what is nearer. 0: anything
     Filter filter;
     uint32_t camera = 0;  ///< index into Scene::cameras
 };
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
-inline constexpr uint32_t kMaxDepth = 65535;                             ///< bounces
+inline constexpr uint32_t kMaxDepth = 65535;  ///< bounces
+inline constexpr double kMaxClamp = 1e30, kMaxAoDistance = 1e30;
 inline constexpr double kMinFilterRadius = 0.01, kMaxFilterRadius = 32;  ///< pixels
 inline constexpr uint32_t kMaxResolution = 1u << 20;                     ///< of one side
 inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< width × height
@@ -54,6 +64,8 @@ enum class BvhBuilder : uint8_t { sah, median, fast, high_quality };
 /// unless the environment variable STERADIAN_ISA names another one.
 enum class Isa : uint8_t { automatic, scalar, sse4, avx2, avx512, neon };
 
+inline constexpr uint32_t kMaxFireflies = 10000;
+
 /// What may differ from run to run without changing the picture.
 struct Execution {
     uint32_t threads = 0;     ///< 0: as many as the machine has
@@ -61,6 +73,7 @@ struct Execution {
     BvhBuilder bvh = BvhBuilder::sah;
     uint32_t bvh_max_depth = 64;
     Isa isa = Isa::automatic;
+    uint32_t fireflies = 0;  ///< how many of the brightest samples the statistics list, 0 … kMaxFireflies
 };
 
 }  // namespace steradian

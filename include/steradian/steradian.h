@@ -5,6 +5,7 @@
 #include "steradian/image_io.h"  // IWYU pragma: export
 #include "steradian/load.h"      // IWYU pragma: export
 #include "steradian/render.h"    // IWYU pragma: export
+#include "steradian/replay.h"    // IWYU pragma: export
 #include "steradian/result.h"    // IWYU pragma: export
 #include "steradian/scene.h"     // IWYU pragma: export
 #include "steradian/settings.h"  // IWYU pragma: export

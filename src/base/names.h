@@ -16,7 +16,9 @@ template <class Kind>
 constexpr std::span<const std::string_view> names_of() noexcept;
 
 namespace detail {
-inline constexpr std::array<std::string_view, 1> kIntegratorNames{"direct"};
+inline constexpr std::array<std::string_view, 8> kIntegratorNames{"path",   "direct", "ao",    "normals",
+                                                                  "albedo", "uv",     "depth", "primitive"};
+inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "light", "bsdf"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
 inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
@@ -26,6 +28,10 @@ inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "ss
 template <>
 constexpr std::span<const std::string_view> names_of<IntegratorKind>() noexcept {
     return detail::kIntegratorNames;
+}
+template <>
+constexpr std::span<const std::string_view> names_of<LightSampling>() noexcept {
+    return detail::kLightSamplingNames;
 }
 template <>
 constexpr std::span<const std::string_view> names_of<SamplerKind>() noexcept {

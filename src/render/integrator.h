@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "render/film.h"
 #include "render/render_scene.h"
@@ -16,6 +17,8 @@
 
 namespace steradian {
 
+class Recorder;
+
 struct WorkUnit {
     TileRect tile;
     uint64_t first_sample = 0;
@@ -24,10 +27,15 @@ struct WorkUnit {
 
 /// What a worker counts; added up at the end.
 struct Counters {
-    uint64_t camera_rays = 0, specular_rays = 0, shadow_rays = 0, bad_samples = 0;
-    std::optional<BadSample> first_bad_sample;  ///< the smallest (sample, y, x)
+    uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0, bad_samples = 0;
+    std::optional<PixelSample> first_bad_sample;  ///< the smallest (sample, y, x)
+    uint32_t fireflies_wanted = 0;
+    std::vector<PixelSample> fireflies;  ///< the brightest, in order; has room for one more than are wanted
 
-    void bad(const BadSample& sample);
+    Counters() = default;
+    explicit Counters(uint32_t wanted) : fireflies_wanted(wanted) { fireflies.reserve(size_t(wanted) + 1); }
+    void bad(const PixelSample& sample);
+    void good(const PixelSample& sample);
     void add(const Counters& other);
 };
 
@@ -39,7 +47,8 @@ struct RenderContext {
     FilterSampler filter;
     Sampler sampler;
     const std::atomic<bool>& cancelled;
-    std::atomic<uint64_t>& rays;  ///< traced so far by all workers, for progress
+    std::atomic<uint64_t>& rays;   ///< traced so far by all workers, for progress
+    Recorder* recorder = nullptr;  ///< of the one sample that is replayed
 };
 
 /// One per worker: it owns that worker's memory, reserved when it is made.
@@ -51,8 +60,18 @@ public:
     virtual bool render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept = 0;
 };
 
-/// What one such integrator holds.
-uint64_t direct_integrator_bytes(uint32_t max_tile_pixels) noexcept;
-std::unique_ptr<Integrator> make_direct_integrator(const RenderContext& context, uint32_t max_tile_pixels);
+/// The camera that the settings name; `usage` when the scene has no such camera, bad_input for a degenerate one.
+Result<CameraSampler> camera_of(const RenderScene& scene, const RenderSettings& settings);
+
+/// What settings.integrator of the context names; integrator_bytes is what one holds.
+std::unique_ptr<Integrator> make_integrator(const RenderContext& context, uint32_t max_tile_pixels);
+uint64_t integrator_bytes(IntegratorKind kind, uint32_t max_tile_pixels) noexcept;
+
+// One file each; integrator.cpp has the table.
+std::unique_ptr<Integrator> make_direct(const RenderContext& context, uint32_t max_tile_pixels);
+std::unique_ptr<Integrator> make_path(const RenderContext& context, uint32_t max_tile_pixels);
+std::unique_ptr<Integrator> make_ao(const RenderContext& context, uint32_t max_tile_pixels);
+std::unique_ptr<Integrator> make_inspector(const RenderContext& context, uint32_t max_tile_pixels);
+uint64_t path_bytes(uint32_t max_tile_pixels) noexcept;
 
 }  // namespace steradian

@@ -25,16 +25,14 @@ using Clock = std::chrono::steady_clock;
 
 Error settings_error(std::string message) { return make_error(ErrorCode::usage, std::move(message)); }
 
-Status check(const RenderSettings& s, const Execution& e, size_t cameras) {
+Status check(const RenderSettings& s, const Execution& e) {
     if (auto status = validate(s); !status) return status;
     if (e.tile_size < 1 || e.tile_size > 256)
         return settings_error(fmt::format("a tile size of {}: expected 1 to 256", e.tile_size));
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
-    if (auto status = check_picture_memory(s, e); !status) return status;
-    if (s.camera >= cameras)
-        return settings_error(cameras == 0 ? "the scene has no camera"
-                                           : fmt::format("there is no camera {}: the scene has {}", s.camera, cameras));
-    return Ok{};
+    if (e.fireflies > kMaxFireflies)
+        return settings_error(fmt::format("{} fireflies: expected at most {}", e.fireflies, kMaxFireflies));
+    return check_picture_memory(s, e);
 }
 
 class Job final : public RenderJob {
@@ -64,7 +62,7 @@ public:
         // Integrators take their memory here, where running out of it can still be reported by start().
         std::vector<std::unique_ptr<Integrator>> integrators;
         for (uint32_t i = 0; i < count; ++i)
-            integrators.push_back(make_direct_integrator(context_, largest_tile(settings_, execution_)));
+            integrators.push_back(make_integrator(context_, largest_tile(settings_, execution_)));
         running_ = count;
         workers_.reserve(count);
         for (uint32_t i = 0; i < count; ++i) {
@@ -138,10 +136,11 @@ private:
         RenderStatistics s;
         s.samples = samples_done_.load();
         s.camera_rays = counters_.camera_rays;
-        s.specular_rays = counters_.specular_rays;
+        s.bounce_rays = counters_.bounce_rays;
         s.shadow_rays = counters_.shadow_rays;
         s.bad_samples = counters_.bad_samples;
         s.first_bad_sample = counters_.first_bad_sample;
+        s.fireflies = counters_.fireflies;
         s.threads = took_part_;
         s.seconds = seconds_.load();
         return s;
@@ -152,6 +151,7 @@ private:
         Counters counters;
         bool took_part = false;
         try {
+            counters = Counters(execution_.fireflies);
             for (uint64_t unit; !cancelled_ && (unit = next_unit_.fetch_add(1)) < units_total();) {
                 if (!render_unit(integrator, unit, counters)) break;
                 took_part = true;
@@ -219,7 +219,7 @@ private:
     std::condition_variable done_;
     uint32_t running_ = 0;
     uint32_t took_part_ = 0;
-    Counters counters_;
+    Counters counters_{execution_.fireflies};
     std::optional<Error> error_;
 
     std::vector<std::thread> workers_;
@@ -230,9 +230,8 @@ private:
 Result<std::unique_ptr<RenderJob>> RenderJob::start(std::shared_ptr<const RenderScene> scene,
                                                     const RenderSettings& settings, const Execution& execution) {
     const FloatMode mode;
-    const auto& cameras = scene->shading.scene.cameras;
-    if (auto status = check(settings, execution, cameras.size()); !status) return std::move(status).error();
-    auto camera = CameraSampler::make(cameras[settings.camera], settings.width, settings.height);
+    if (auto status = check(settings, execution); !status) return std::move(status).error();
+    auto camera = camera_of(*scene, settings);
     if (!camera) return std::move(camera).error();
     try {
         auto job = std::make_unique<Job>(std::move(scene), settings, execution, *camera);

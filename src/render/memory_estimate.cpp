@@ -91,7 +91,7 @@ uint64_t picture_bytes(const RenderSettings& s, const Execution& e) {
     // The sums go before a file's encoder takes its share, which is less.
     return width * height * (sizeof(RgbSum) + 3 * sizeof(float)) +
            Film::tile_bytes() * (width / e.tile_size + 2) * (height / e.tile_size + 2) +
-           workers_of(e) * direct_integrator_bytes(largest_tile(s, e));
+           workers_of(e) * integrator_bytes(s.integrator, largest_tile(s, e));
 }
 
 Status check_picture_memory(const RenderSettings& s, const Execution& e) {

@@ -17,6 +17,13 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     m["steradian:camera"] = fmt::format("{}", s.camera);
     m["steradian:integrator"] = name_of(s.integrator);
     m["steradian:max_depth"] = fmt::format("{}", s.max_depth);
+    if (s.integrator == IntegratorKind::path) {
+        m["steradian:light_sampling"] = name_of(s.light_sampling);
+        m["steradian:roulette_depth"] = fmt::format("{}", s.roulette_depth);
+        if (s.clamp > 0) m["steradian:clamp"] = fmt::format("{} (biased: indirect light was limited)", s.clamp);
+    }
+    if (s.integrator == IntegratorKind::ao && s.ao_distance > 0)
+        m["steradian:ao_distance"] = fmt::format("{}", s.ao_distance);
     m["steradian:sampler"] = name_of(s.sampler);
     m["steradian:seed"] = fmt::format("{}", s.seed);
     m["steradian:filter"] = fmt::format("{} {}", name_of(s.filter.kind), s.filter.radius);

@@ -262,6 +262,14 @@ Status validate(const RenderSettings& s) {
         return usage(fmt::format("{} samples per pixel: expected 1 to {}", s.samples_per_pixel, kMaxSamplesPerPixel));
     if (s.max_depth > kMaxDepth)
         return usage(fmt::format("a depth of {}: expected at most {}", s.max_depth, kMaxDepth));
+    if (s.roulette_depth > kMaxDepth)
+        return usage(
+            fmt::format("Russian roulette after {} bounces: expected at most {}", s.roulette_depth, kMaxDepth));
+    if (!(s.clamp >= 0 && s.clamp <= float(kMaxClamp)))
+        return usage(fmt::format("a clamp of {}: expected 0 to {}", s.clamp, kMaxClamp));
+    if (!(s.ao_distance >= 0 && s.ao_distance <= float(kMaxAoDistance)))
+        return usage(
+            fmt::format("an ambient occlusion distance of {}: expected 0 to {}", s.ao_distance, kMaxAoDistance));
     if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
         return usage(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius, kMinFilterRadius,
                                  kMaxFilterRadius));

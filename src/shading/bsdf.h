@@ -69,6 +69,7 @@ struct BsdfSample {
     float pdf = 0;  ///< 0 for specular lobes
     bool specular = false;
     bool transmitted = false;
+    float radiance_scale = 1;  ///< the (η_i/η_t)² that is part of weight
 };
 
 Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point) noexcept;

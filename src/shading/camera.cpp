@@ -43,6 +43,7 @@ Result<CameraSampler> CameraSampler::make(const Camera& camera, uint32_t width, 
     const double half_height = math::tan(c.vertical_fov * (std::numbers::pi / 360));
     const double pixel = 2 * half_height / height;
     out.origin_ = c.position;
+    out.forward_ = forward;
     out.corner_ = forward - x * (pixel * width / 2) + y * half_height;
     out.dx_ = x * pixel;
     out.dy_ = y * -pixel;

@@ -18,8 +18,12 @@ public:
     /// Through a film position in pixels from the top left corner of the full picture. The direction has unit length.
     Ray generate(Vec2 film) const noexcept;
 
+    /// Metres along the camera's own -Z.
+    double depth_of(Vec3 p) const noexcept { return dot(Vec3d(p) - Vec3d(origin_), forward_); }
+
 private:
     Vec3 origin_;
+    Vec3d forward_;           ///< unit
     Vec3d corner_, dx_, dy_;  ///< direction through film (0, 0), and its change per pixel
 };
 

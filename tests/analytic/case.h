@@ -50,6 +50,7 @@ std::vector<Case> area_light_cases();
 std::vector<Case> emitter_side_cases();
 std::vector<Case> environment_cases();
 std::vector<Case> specular_cases();
+std::vector<Case> path_cases();
 std::vector<Case> surface_cases();
 std::vector<Case> camera_cases();
 std::vector<Case> transform_cases();

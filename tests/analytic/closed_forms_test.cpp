@@ -26,6 +26,7 @@ TEST(ClosedForms, AreaLights) { expect_all(area_light_cases()); }
 TEST(ClosedForms, EmitterSides) { expect_all(emitter_side_cases()); }
 TEST(ClosedForms, Environments) { expect_all(environment_cases()); }
 TEST(ClosedForms, SpecularSurfaces) { expect_all(specular_cases()); }
+TEST(ClosedForms, Paths) { expect_all(path_cases()); }
 TEST(ClosedForms, DiffuseSurfaces) { expect_all(surface_cases()); }
 TEST(ClosedForms, CameraAndFilters) { expect_all(camera_cases()); }
 TEST(ClosedForms, TransformsAndScales) { expect_all(transform_cases()); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analytic/check.h"
+#include "analytic/compare.h"
 #include "support/support.h"
 
 namespace steradian::analytic {
@@ -159,56 +160,12 @@ TEST(Samplers, SobolHasLessNoise) {
     EXPECT_LT(sobol.standard_error * 4, independent.standard_error);
 }
 
-/// Per pixel and channel: the means of pictures by both samplers over independent seeds. The independent sampler's
-/// pictures give its standard error; so do Sobol's from seed to seed. Šidák's correction keeps the chance of a false
-/// alarm anywhere at 1 in 1000.
 TEST(Samplers, AgreeInEveryPixel) {
     const PreparedCase scene(room().str(), {});
-    const uint32_t seeds = test::by_tier(32u, 128u);
-    const uint64_t samples = test::by_tier<uint64_t>(64, 256);
-    const size_t numbers = size_t(16) * 16 * 3;
-    std::vector<double> sum[2], squares[2];
-    for (const int kind : {0, 1}) {
-        sum[kind].resize(numbers);
-        squares[kind].resize(numbers);
-        for (uint32_t seed = 0; seed < seeds; ++seed) {
-            RenderSettings settings = scene.settings;
-            settings.sampler = kind == 0 ? SamplerKind::sobol : SamplerKind::independent;
-            settings.seed = 100 + seed + 10000 * static_cast<uint64_t>(kind);
-            settings.samples_per_pixel = samples;
-            const Image image = scene.picture(settings);
-            for (size_t i = 0; i < numbers; ++i) {
-                sum[kind][i] += image.pixels[i];
-                squares[kind][i] += double(image.pixels[i]) * image.pixels[i];
-            }
-        }
-    }
-    // P(|t| > z) for Welch's t with at least seeds - 1 degrees of freedom, by its density's integral.
-    const double degrees = seeds - 1;
-    const auto tail = [&](double z) {
-        const double scale =
-            std::exp(std::lgamma((degrees + 1) / 2) - std::lgamma(degrees / 2)) / std::sqrt(degrees * kPi);
-        return 1 - 2 * scale *
-                       integrate([&](double t) { return std::pow(1 + t * t / degrees, -(degrees + 1) / 2); }, 0, z, 64);
-    };
-    const double allowed = 1 - std::pow(1 - 0.001, 1.0 / static_cast<double>(numbers));
-    double bound = 3;
-    while (tail(bound) > allowed) bound += 0.01;
-    const auto n = static_cast<double>(seeds);
-    size_t noisy_pixels = 0;
-    for (size_t i = 0; i < numbers; ++i) {
-        double variance = 0, difference = 0;
-        for (const int kind : {0, 1}) {
-            const double mean = sum[kind][i] / n;
-            variance += std::max(0.0, squares[kind][i] / n - mean * mean) / (n - 1);
-            difference += kind == 0 ? mean : -mean;
-        }
-        noisy_pixels += variance > 0;
-        const double arithmetic = kRounding * sum[1][i] / n;
-        EXPECT_LE(std::abs(difference), bound * std::sqrt(variance) + arithmetic)
-            << "pixel " << i / 3 % 16 << ", " << i / 48 << " channel " << i % 3;
-    }
-    EXPECT_GT(noisy_pixels, numbers / 2);  // it is a comparison of noise, not of zeros
+    RenderSettings sobol = scene.settings, independent = scene.settings;
+    sobol.sampler = SamplerKind::sobol;
+    independent.sampler = SamplerKind::independent;
+    expect_same_means(scene, sobol, independent);
 }
 
 /// A wrong value by a quarter of a percent is found: the bounds are not so wide that anything passes.

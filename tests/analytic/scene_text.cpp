@@ -78,6 +78,16 @@ SceneText& SceneText::depth(int bounces) {
     return *this;
 }
 
+SceneText& SceneText::integrator(std::string_view name) {
+    integrator_ = name;
+    return *this;
+}
+
+SceneText& SceneText::light_sampling(std::string_view name) {
+    light_sampling_ = name;
+    return *this;
+}
+
 SceneText& SceneText::samples(int per_pixel) {
     samples_ = per_pixel;
     return *this;
@@ -114,7 +124,8 @@ SceneText& SceneText::light(const Object& value) {
 }
 
 std::string SceneText::str() const {
-    const Object render = Object().set("integrator", "direct").set("max_depth", depth_).set("spp", samples_);
+    Object render = Object().set("integrator", integrator_).set("max_depth", depth_).set("spp", samples_);
+    if (light_sampling_ != "mis") render.set("light_sampling", light_sampling_);
     const Object film =
         Object()
             .raw("resolution", array_of(std::array{width_, height_}, [](int n) { return std::to_string(n); }))

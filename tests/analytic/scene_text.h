@@ -45,6 +45,9 @@ public:
     SceneText& look(V3 from, V3 at, double vertical_fov, V3 up = {0, 1, 0});
     SceneText& size(int width, int height);
     SceneText& depth(int bounces);
+    /// `direct` where nothing is said.
+    SceneText& integrator(std::string_view name);
+    SceneText& light_sampling(std::string_view name);
     SceneText& samples(int per_pixel);
     SceneText& filter(std::string_view type, double radius);
     SceneText& texture(std::string_view name, const Object& value);
@@ -58,6 +61,7 @@ public:
 private:
     std::string camera_;
     int width_ = 8, height_ = 8, depth_ = 1, samples_ = 16;
+    std::string integrator_ = "direct", light_sampling_ = "mis";
     Object filter_ = Object("box").set("radius", 0.5);
     Object textures_, materials_, shapes_;
     std::vector<std::string> objects_, lights_;

@@ -37,16 +37,22 @@ void expect_course_camera(const Scene& scene) {
     EXPECT_EQ(camera.vertical_fov, 19.5f);
 }
 
-void expect_direct_only_warning(const LoadedScene& loaded) {
+void expect_path(const LoadedScene& loaded, LightSampling sampling, std::string_view warning) {
+    EXPECT_EQ(loaded.settings.integrator, IntegratorKind::path);
+    EXPECT_EQ(loaded.settings.light_sampling, sampling);
+    if (warning.empty()) {
+        EXPECT_TRUE(loaded.diagnostics.empty());
+        return;
+    }
     ASSERT_EQ(loaded.diagnostics.warnings().size(), 1u);
-    EXPECT_NE(loaded.diagnostics.warnings()[0].message.find("rendered with direct light only"), std::string::npos);
+    EXPECT_EQ(loaded.diagnostics.warnings()[0].message, warning);
     EXPECT_EQ(loaded.diagnostics.warnings()[0].where.line, 3u);
 }
 
 TEST_F(CourseFiles, CornellBoxWithAnAreaLight) {
     const LoadedScene loaded = load("cbox.json");
     expect_course_camera(loaded.scene);
-    expect_direct_only_warning(loaded);
+    expect_path(loaded, LightSampling::mis, "the integrator 'bdpt' is not there: rendered with 'path'");
     EXPECT_EQ(loaded.settings.width, 256u);
     EXPECT_EQ(loaded.settings.samples_per_pixel, 128u);
     EXPECT_EQ(loaded.settings.max_depth, 12u);
@@ -70,6 +76,7 @@ TEST_F(CourseFiles, CornellBoxWithThePointLightOfTheIntegrator) {
         const LoadedScene loaded = load(name);
         expect_course_camera(loaded.scene);
         EXPECT_TRUE(loaded.diagnostics.empty());
+        EXPECT_EQ(loaded.settings.integrator, IntegratorKind::direct);
         EXPECT_EQ(loaded.settings.samples_per_pixel, 32u);
         EXPECT_EQ(loaded.settings.max_depth, 16u);
         EXPECT_EQ(loaded.settings.width, 512u);
@@ -86,13 +93,13 @@ TEST_F(CourseFiles, CornellBoxWithThePointLightOfTheIntegrator) {
 
 TEST_F(CourseFiles, Spheres) {
     const LoadedScene one = load("sphere.json");
-    expect_direct_only_warning(one);
+    expect_path(one, LightSampling::mis, "");
     EXPECT_EQ(std::get<EnvironmentLight>(one.scene.lights.at(0)).radiance, (Rgb{1, 1, 1}));
     EXPECT_EQ(std::get<Sphere>(one.scene.shapes.at(0)).center, (Vec3{0, 1, 0}));
     EXPECT_EQ(reflectance_of(one, 0), (Rgb{1, 1, 1}));
 
     const LoadedScene two = load("two_spheres.json");
-    expect_direct_only_warning(two);
+    expect_path(two, LightSampling::mis, "the integrator 'bdpt' is not there: rendered with 'path'");
     EXPECT_EQ(two.settings.filter, (Filter{FilterKind::gaussian, 1.5f}));
     ASSERT_EQ(two.scene.instances.size(), 2u);
     EXPECT_TRUE(two.scene.meshes.empty());
@@ -188,15 +195,26 @@ TEST(CourseScene, MaterialsAndObjects) {
     EXPECT_EQ(loaded.scene.instances.at(0).world_from_object, translation(0, 0, 1) * scaling(2, 2, 2));
 }
 
-TEST(CourseScene, IntegratorsOtherThanThePointLightsAreWarnedAbout) {
-    for (const char* type : {"path", "bdpt", "photon"}) {
+TEST(CourseScene, IntegratorsThatAreNotThereBecomePathWithAWarning) {
+    for (const char* type : {"bdpt", "photon"}) {
         const LoadedScene loaded = load_good(course("", "{\"type\": \"" + std::string(type) + "\"}"));
         ASSERT_EQ(loaded.diagnostics.warnings().size(), 1u);
         EXPECT_NE(loaded.diagnostics.warnings()[0].message.find(type), std::string::npos);
+        EXPECT_EQ(loaded.settings.integrator, IntegratorKind::path);
+    }
+    const std::pair<const char*, LightSampling> profiles[] = {{"RandomWalk", LightSampling::bsdf},
+                                                              {"NextEventEstimation", LightSampling::light},
+                                                              {"MIS", LightSampling::mis}};
+    for (const auto& [profile, sampling] : profiles) {
+        const LoadedScene loaded =
+            load_good(course("", "{\"type\": \"path\", \"profile\": \"" + std::string(profile) + "\"}"));
+        EXPECT_TRUE(loaded.diagnostics.empty());
+        EXPECT_EQ(loaded.settings.integrator, IntegratorKind::path);
+        EXPECT_EQ(loaded.settings.light_sampling, sampling);
     }
     const LoadedScene ignored =
         load_good(course("", R"({"type": "path", "point_light_position": [0, 0, 0], "point_light_flux": 1})"));
-    EXPECT_EQ(ignored.diagnostics.warnings().size(), 3u);
+    EXPECT_EQ(ignored.diagnostics.warnings().size(), 2u);
     EXPECT_TRUE(ignored.scene.lights.empty());
 }
 

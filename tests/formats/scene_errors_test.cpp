@@ -51,7 +51,9 @@ TEST(SceneErrors, TheWholeFile) {
 TEST(SceneErrors, Render) {
     refused("\"render\": §[]", "'render' must be an object, got an array of 0");
     refused("\"render\": {§\"samples\": 5}", "unknown key 'samples' in 'render'", "sampler");
-    refused("\"render\": {\"integrator\": §\"path\"}", "'integrator' cannot be \"path\"", "expected direct");
+    refused("\"render\": {\"integrator\": §\"pat\"}", "'integrator' cannot be \"pat\"", "did you mean 'path'?");
+    refused("\"render\": {\"clamp\": §-1}", "'clamp' must be");
+    refused("\"render\": {\"light_sampling\": §\"both\"}", "'light_sampling' cannot be \"both\"", "mis");
     refused("\"render\": {\"integrator\": §1}", "'integrator' must be a string, got 1");
     refused("\"render\": {\"sampler\": §\"sobel\"}", "'sampler' cannot be \"sobel\"", "did you mean 'sobol'?");
     refused("\"render\": {\"spp\": §0}", "'spp' must be a whole number from 1 to 1000000000, got 0");

@@ -104,6 +104,7 @@ TEST_F(Schema, ListsTheSameWords) {
         return *member(*member(definition(object), "properties"), key);
     };
     check(property("render", "integrator"), names_of<IntegratorKind>());
+    check(property("render", "light_sampling"), names_of<LightSampling>());
     check(property("render", "sampler"), names_of<SamplerKind>());
     check(property("filter", "type"), names_of<FilterKind>());
     check(property("image_texture", "filter"), kTextureFilters);

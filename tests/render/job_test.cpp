@@ -23,6 +23,7 @@ RenderSettings small_settings() {
     RenderSettings s;
     s.width = 61;
     s.height = 43;
+    s.integrator = IntegratorKind::direct;
     s.samples_per_pixel = 72;  // one whole block and an open one
     return s;
 }
@@ -244,7 +245,7 @@ TEST(Job, RaysAreCounted) {
     EXPECT_EQ(statistics.samples, 61u * 43u * 3u);
     EXPECT_EQ(statistics.camera_rays, 61u * 43u * 3u);
     EXPECT_EQ(statistics.shadow_rays, 2u * 61u * 43u * 3u);
-    EXPECT_EQ(statistics.specular_rays, 0u);
+    EXPECT_EQ(statistics.bounce_rays, 0u);
 }
 
 TEST(Job, SettingsThatMakeNoSenseAreRefused) {

@@ -35,6 +35,7 @@ constexpr json::ObjectSpec kObjectKinds[] = {{"mesh", kMeshKeys}, {"sphere", kSp
 
 constexpr Key kIntegratorTypes[] = {"intersection_test", "path", "bdpt", "photon"};
 constexpr Key kProfiles[] = {"RandomWalk", "NextEventEstimation", "MIS"};
+constexpr LightSampling kSamplingOfProfile[] = {LightSampling::bsdf, LightSampling::light, LightSampling::mis};
 constexpr Key kMaterialTypesWithRough[] = {"diffuse", "refraction", "glass", "roughconductor"};
 constexpr Key kObjectTypesOfCourse[] = {"mesh", "sphere"};
 constexpr Range kTextureScale{-1e6, 1e6};
@@ -95,9 +96,9 @@ void CourseLoader::read_integrator(Value value) {
     const bool point_light = json::read_choice(source_, type, "the type of the integrator", kIntegratorTypes) == 0;
     settings.max_depth = static_cast<uint32_t>(reader.integer_or("max_depth", settings.max_depth, 0, kMaxDepth));
     settings.samples_per_pixel = reader.integer_or("spp", settings.samples_per_pixel, 1, kMaxSamplesPerPixel);
-    // Of no meaning to direct light, but checked all the same.
-    reader.choice_or("profile", 0, kProfiles);
-    reader.number_or("rr_threshold", 0, Range{0, 1e6});
+    settings.integrator = point_light ? IntegratorKind::direct : IntegratorKind::path;
+    settings.light_sampling = kSamplingOfProfile[reader.choice_or("profile", 2, kProfiles)];
+    reader.number_or("rr_threshold", 0, Range{0, 1e6});  // when a path may end changes the noise only
     if (point_light) {
         PointLight light;
         light.position = reader.vec3("point_light_position");
@@ -105,9 +106,9 @@ void CourseLoader::read_integrator(Value value) {
         for (int c = 0; c < 3; ++c) light.intensity[c] = static_cast<float>(flux[c] * kInverseSphere);
         assets_.add_light(light, "point_light");
     } else {
-        context_.warn(
-            "the integrator '" + std::string(type.string()) + "' is not there yet: rendered with direct light only",
-            type.offset());
+        if (type.string() != "path")
+            context_.warn("the integrator '" + std::string(type.string()) + "' is not there: rendered with 'path'",
+                          type.offset());
         for (const Key key : {Key("point_light_position"), Key("point_light_flux")})
             if (reader.find(key))
                 context_.warn(quoted(key) + " is for the integrator 'intersection_test' and is ignored",

@@ -83,7 +83,14 @@ void NativeLoader::read_camera(Value value, std::string name) {
 void NativeLoader::read_render(Value value) {
     RenderSettings& settings = context_.loaded.settings;
     ObjectReader render(source_, value, kRenderSpec, "'render'");
-    settings.integrator = static_cast<IntegratorKind>(render.choice_or("integrator", 0, names_of<IntegratorKind>()));
+    settings.integrator = static_cast<IntegratorKind>(
+        render.choice_or("integrator", static_cast<size_t>(settings.integrator), names_of<IntegratorKind>()));
+    settings.light_sampling =
+        static_cast<LightSampling>(render.choice_or("light_sampling", 0, names_of<LightSampling>()));
+    settings.roulette_depth =
+        static_cast<uint32_t>(render.integer_or("roulette_depth", settings.roulette_depth, 0, kMaxDepth));
+    settings.clamp = render.number_or("clamp", settings.clamp, Range{0, kMaxClamp});
+    settings.ao_distance = render.number_or("ao_distance", settings.ao_distance, Range{0, kMaxAoDistance});
     settings.max_depth = static_cast<uint32_t>(render.integer_or("max_depth", settings.max_depth, 0, kMaxDepth));
     settings.samples_per_pixel = render.integer_or("spp", settings.samples_per_pixel, 1, kMaxSamplesPerPixel);
     settings.sampler = static_cast<SamplerKind>(render.choice_or("sampler", 0, names_of<SamplerKind>()));

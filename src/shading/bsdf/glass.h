@@ -30,8 +30,12 @@ inline std::optional<BsdfSample> sample_lobe(const GlassBsdf& lobe, const LobeGe
     const double eta = surface->outside ? lobe.eta : 1 / static_cast<double>(lobe.eta);
     const double cos_o = min_of(dot(Vec3d(wo), surface->ns), 1.0);
     if (uc >= fresnel_dielectric(static_cast<float>(cos_o), static_cast<float>(eta)))
-        if (const auto wi = surface->refracted(wo, eta))
-            return specular_sample(*wi, lobe.transmittance * static_cast<float>(1 / (eta * eta)), true);
+        if (const auto wi = surface->refracted(wo, eta)) {
+            const auto scale = static_cast<float>(1 / (eta * eta));
+            BsdfSample out = specular_sample(*wi, lobe.transmittance * scale, true);
+            out.radiance_scale = scale;
+            return out;
+        }
     return specular_sample(surface->reflected(wo), lobe.reflectance, false);
 }
 

@@ -15,12 +15,29 @@ inline double sphere_cone(const SphereEmitter& sphere, double distance) {
     return sine2 / (1 + std::sqrt(cosine2));
 }
 
+/// Of a point on the surface rounding decides whether it is inside or outside. So it counts as neither, and the sphere
+/// is sampled by area, which is right from both sides: for such a point it is the cosine about its normal.
+inline bool is_on_surface(const SphereEmitter& sphere, double distance) {
+    return std::fabs(distance - sphere.radius) <= 2 * length(Vec3d(sphere.p_error));
+}
+
+inline double sphere_area_pdf(const SphereEmitter& sphere, Vec3d to_surface, Vec3d n) {
+    return solid_angle_pdf(1 / (4 * std::numbers::pi * sphere.radius * sphere.radius), to_surface, n);
+}
+
 inline std::optional<EmitterSample> sample_emitter(const SphereEmitter& sphere, const EmitterContext& context,
                                                    Vec3d from, uint32_t, Vec2 u) {
     const Vec3d to_center = sphere.center - from;
     const double distance = length(to_center), r = sphere.radius;
     EmitterSample out;
     out.p_error = sphere.p_error;
+    if (is_on_surface(sphere, distance)) {
+        out.n = warp::sphere(u);
+        out.p = sphere.center + out.n * r;
+        if (!emits_towards(out.p, out.n, from, context.two_sided)) return std::nullopt;
+        out.pdf = sphere_area_pdf(sphere, out.p - from, out.n);
+        return out;
+    }
     if (distance > r) {
         const double cap = sphere_cone(sphere, distance);
         const Vec3d local = warp::cone(u, cap);
@@ -41,8 +58,9 @@ inline std::optional<EmitterSample> sample_emitter(const SphereEmitter& sphere, 
     return out;
 }
 
-inline double emitter_pdf(const SphereEmitter& sphere, const EmitterContext&, Vec3d from, Vec3d, Vec3d) {
+inline double emitter_pdf(const SphereEmitter& sphere, const EmitterContext&, Vec3d from, Vec3d p, Vec3d n) {
     const double distance = length(sphere.center - from);
+    if (is_on_surface(sphere, distance)) return sphere_area_pdf(sphere, p - from, n);
     if (!(distance > sphere.radius)) return warp::kSpherePdf;
     return warp::cone_pdf(sphere_cone(sphere, distance));
 }

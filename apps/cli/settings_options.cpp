@@ -1,0 +1,226 @@
+#include "settings_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+#include "base/names.h"
+#include "base/text.h"
+#include "render/memory_estimate.h"
+#include "scene/validate.h"
+
+namespace steradian::cli {
+
+std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char separator, size_t count) {
+    std::vector<uint32_t> out;
+    while (true) {
+        const size_t end = std::min(text.find(separator), text.size());
+        uint32_t value = 0;
+        const auto [p, error] = std::from_chars(text.data(), text.data() + end, value);
+        if (error != std::errc() || p != text.data() + end) return std::nullopt;
+        out.push_back(value);
+        if (end == text.size()) break;
+        text.remove_prefix(end + 1);
+    }
+    if (out.size() != count) return std::nullopt;
+    return out;
+}
+
+namespace {
+
+Result<Filter> parse_filter(const std::string& text) {
+    const size_t colon = text.find(':');
+    const auto kind = find_name<FilterKind>(text.substr(0, colon));
+    if (!kind)
+        return usage_error(fmt::format("--filter: unknown filter '{}'", escape_for_display(text)),
+                           suggestion(text.substr(0, colon), names_of<FilterKind>()));
+    if (colon == std::string::npos) return Filter{*kind, default_filter_radius(*kind)};
+    const auto radius = parse_double(text.substr(colon + 1));
+    if (!radius)
+        return usage_error(
+            fmt::format("--filter: '{}' is not a radius in pixels", escape_for_display(text.substr(colon + 1))),
+            "for example --filter gaussian:1.5");
+    return Filter{*kind, static_cast<float>(std::clamp(*radius, -1e30, 1e30))};
+}
+
+Result<Crop> parse_crop(const std::string& text) {
+    const auto crop = parse_numbers(text, ',', 4);
+    if (!crop)
+        return usage_error(fmt::format("--crop: '{}' is not X0,Y0,X1,Y1", escape_for_display(text)),
+                           "pixels from the top left corner, X1 and Y1 not included");
+    const Crop c{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
+    if (c.x0 >= c.x1 || c.y0 >= c.y1) return usage_error(fmt::format("--crop: {} is an empty window", text));
+    return c;
+}
+
+Status parse_size(const std::string& text, Overrides& said) {
+    const auto size = parse_numbers(text, 'x', 2);
+    if (!size)
+        return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(text)),
+                           "for example --size 1920x1080");
+    said.width = (*size)[0], said.height = (*size)[1];
+    return Ok{};
+}
+
+void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s) {
+    if (o.spp) s.samples_per_pixel = *o.spp;
+    if (o.seed) s.seed = *o.seed;
+    if (o.max_depth) s.max_depth = *o.max_depth;
+    if (o.roulette_depth) s.roulette_depth = *o.roulette_depth;
+    if (o.ao_distance) s.ao_distance = *o.ao_distance;
+    if (o.clamp) s.clamp = *o.clamp;
+    if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
+    if (!o.light_sampling.empty()) s.light_sampling = *find_name<LightSampling>(o.light_sampling);
+    if (!o.sampler.empty()) s.sampler = *find_name<SamplerKind>(o.sampler);
+    if (said.width) s.width = *said.width, s.height = *said.height;
+    if (said.whole) s.crop.reset();
+    if (said.crop) s.crop = said.crop;
+    if (said.filter) s.filter = *said.filter;
+}
+
+}  // namespace
+
+Result<Overrides> parse_overrides(const SettingsOptions& o, const Execution& execution) {
+    Overrides said;
+    const auto take = [](auto parsed, auto& into) -> Status {
+        if (!parsed) return std::move(parsed).error();
+        into = *parsed;
+        return Ok{};
+    };
+    if (!o.size.empty())
+        if (auto status = parse_size(o.size, said); !status) return std::move(status).error();
+    said.whole = o.crop == "all";
+    if (!o.crop.empty() && !said.whole)
+        if (auto status = take(parse_crop(o.crop), said.crop); !status) return std::move(status).error();
+    if (!o.filter.empty())
+        if (auto status = take(parse_filter(o.filter), said.filter); !status) return std::move(status).error();
+    RenderSettings alone;
+    if (said.crop) alone.width = said.crop->x1, alone.height = said.crop->y1;  // at least, if the scene says the size
+    override(o, said, alone);
+    if (auto status = validate(alone); !status) return std::move(status).error();
+    if (said.width || said.crop)
+        if (auto status = check_picture_memory(alone, execution); !status) return std::move(status).error();
+    return said;
+}
+
+namespace {
+
+std::string camera_hint(const std::string& name, const Scene& scene) {
+    const std::vector<std::string_view> names(scene.names.cameras.begin(), scene.names.cameras.end());
+    if (const auto match = closest_match(name, names)) return "did you mean '" + *match + "'?";
+    if (names.empty()) return fmt::format("the scene's cameras are numbered 0 to {}", scene.cameras.size() - 1);
+    return "the scene has: " + escape_for_display(fmt::format("{}", fmt::join(names, ", ")), 400);
+}
+
+Status apply_camera(const std::string& name, const Scene& scene, uint32_t& camera) {
+    const auto& names = scene.names.cameras;
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) {
+            camera = static_cast<uint32_t>(i);
+            return Ok{};
+        }
+    if (const auto number = parse_numbers(name, ',', 1); number && (*number)[0] < scene.cameras.size()) {
+        camera = (*number)[0];
+        return Ok{};
+    }
+    return usage_error(fmt::format("--camera: the scene has no camera '{}'", escape_for_display(name)),
+                       camera_hint(name, scene));
+}
+
+}  // namespace
+
+Result<RenderSettings> settings_for(const SettingsOptions& o, const Overrides& said, const LoadedScene& loaded) {
+    RenderSettings s = loaded.settings;
+    if (said.width && s.crop && o.crop.empty())
+        return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
+    override(o, said, s);
+    if (auto status = validate(s); !status) return std::move(status).error();
+    if (!o.camera.empty())
+        if (auto status = apply_camera(o.camera, loaded.scene, s.camera); !status) return std::move(status).error();
+    return s;
+}
+
+namespace {
+
+/// As a shell takes it.
+std::string shell_word(const std::string& text) {
+    const bool plain = !text.empty() && text.find_first_not_of(
+                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                            "0123456789_./:,+-") == std::string::npos;
+    if (plain) return text;
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+}  // namespace
+
+std::string replay_command(const std::string& scene, const SettingsOptions& o, const PixelSample& sample) {
+    std::string out = fmt::format("steradian replay {} --pixel {},{} --sample {}", shell_word(scene), sample.x,
+                                  sample.y, sample.sample);
+    const auto word = [&](const char* option, const std::string& value) {
+        if (!value.empty()) out += fmt::format(" {} {}", option, shell_word(value));
+    };
+    const auto number = [&](const char* option, const auto& value) {
+        if (value) out += fmt::format(" {} {}", option, *value);
+    };
+    number("--spp", o.spp);
+    word("--size", o.size);
+    word("--crop", o.crop);
+    word("--camera", o.camera);
+    word("--integrator", o.integrator);
+    number("--max-depth", o.max_depth);
+    word("--light-sampling", o.light_sampling);
+    number("--roulette-depth", o.roulette_depth);
+    number("--clamp", o.clamp);
+    number("--ao-distance", o.ao_distance);
+    word("--filter", o.filter);
+    word("--sampler", o.sampler);
+    number("--seed", o.seed);
+    return escape_for_display(out, 8192);
+}
+
+void add_settings_options(CLI::App* c, SettingsOptions& options) {
+    add_count<uint64_t>(c, "--spp", options.spp, 1, kMaxSamplesPerPixel,
+                        "Samples per pixel; the noise falls with their square root")
+        ->group("Picture");
+    c->add_option("--size", options.size, "Pixels, for example 1920x1080")->type_name("WIDTHxHEIGHT")->group("Picture");
+    c->add_option("--crop", options.crop,
+                  "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
+                  "bits as in the whole picture; 'all' undoes the scene's crop")
+        ->type_name("X0,Y0,X1,Y1")
+        ->group("Picture");
+    c->add_option("--camera", options.camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
+    add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(),
+               "path: all light; direct: what arrives without detours; ao: ambient occlusion. To look at a scene:\n"
+               "normals, albedo, uv, depth (metres), primitive (a colour each)")
+        ->group("Picture");
+    add_count<uint32_t>(c, "--max-depth", options.max_depth, 0, kMaxDepth,
+                        "Bounces: 0 only what glows, 1 direct light, more for mirrors, glass and indirect light")
+        ->group("Picture");
+    add_choice(c, "--light-sampling", options.light_sampling, names_of<LightSampling>(),
+               "How path finds lights: mis (least noise), or for comparisons light or bsdf alone")
+        ->group("Picture");
+    add_count<uint32_t>(c, "--roulette-depth", options.roulette_depth, 0, kMaxDepth,
+                        "Bounces of path before Russian roulette begins to end paths; the mean stays")
+        ->group("Picture");
+    add_real(c, "--clamp", options.clamp, 0, kMaxClamp,
+             "Most that one connection of path adds as indirect light: fewer fireflies, but the picture is\nbiased, "
+             "and says so in its metadata; 0: no limit")
+        ->group("Picture");
+    add_real(c, "--ao-distance", options.ao_distance, 0, kMaxAoDistance,
+             "Metres up to which ao looks for what is in the way; 0: anywhere")
+        ->group("Picture");
+    c->add_option("--filter", options.filter,
+                  "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
+        ->type_name("NAME[:RADIUS]")
+        ->group("Picture");
+    add_choice(c, "--sampler", options.sampler, names_of<SamplerKind>(), "sobol (less noise) or independent")
+        ->group("Picture");
+    add_count<uint64_t>(c, "--seed", options.seed, 0, std::numeric_limits<uint64_t>::max(),
+                        "Another seed gives another, equally good noise pattern")
+        ->group("Picture");
+}
+
+}  // namespace steradian::cli

@@ -1,0 +1,43 @@
+// What the command line says about the picture: options that `render` and `replay` share.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "command.h"
+#include "steradian/load.h"
+#include "steradian/render.h"
+
+namespace steradian::cli {
+
+inline constexpr uint32_t kMaxThreads = 1024;
+
+struct SettingsOptions {
+    std::optional<uint64_t> spp, seed;
+    std::optional<uint32_t> max_depth, roulette_depth;
+    std::optional<float> clamp, ao_distance;
+    std::string size, camera, integrator, light_sampling, filter, sampler, crop;
+};
+void add_settings_options(CLI::App* c, SettingsOptions& options);
+
+/// The same, read. It wins over what the scene says.
+struct Overrides {
+    std::optional<uint32_t> width, height;
+    std::optional<Crop> crop;
+    bool whole = false;  ///< --crop all
+    std::optional<Filter> filter;
+};
+
+/// Whole numbers between separators, exactly `count` of them.
+std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char separator, size_t count);
+
+/// Parses, and refuses what no scene could make right: loading one may take long.
+Result<Overrides> parse_overrides(const SettingsOptions& options, const Execution& execution);
+
+/// The scene's settings with the command line's, checked before anything is derived from the scene.
+Result<RenderSettings> settings_for(const SettingsOptions& options, const Overrides& said, const LoadedScene& loaded);
+
+/// The command that replays a sample of a picture that was rendered with these options.
+std::string replay_command(const std::string& scene, const SettingsOptions& options, const PixelSample& sample);
+
+}  // namespace steradian::cli

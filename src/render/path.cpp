@@ -1,0 +1,191 @@
+// Unidirectional path tracing with next-event estimation: every rough vertex asks lights for directions and the BSDF
+// for one, and multiple importance sampling puts the two together (Veach 1997, chapter 9). The BSDF's direction carries
+// the path on; Russian roulette ends it.
+#include "render/wavefront.h"
+
+namespace steradian {
+namespace {
+
+/// With at most so many lights the first rough vertex of a path samples all of them, as `direct` does. Otherwise, and
+/// at every later vertex, one light is chosen.
+constexpr uint32_t kFewLights = 16;
+
+/// Choosing one of n with 32 uniform bits. Where n is no power of two some have one of the 2^32 values more than
+/// others; that is in their probability.
+struct LightChoice {
+    uint64_t lights;
+
+    uint32_t chosen(uint32_t bits) const { return static_cast<uint32_t>((bits * lights) >> 32); }
+    double probability(uint32_t light) const { return double(first(light + 1) - first(light)) * 0x1p-32; }
+
+private:
+    /// The smallest number that chooses `light`.
+    uint64_t first(uint64_t light) const { return ((light << 32) + lights - 1) / lights; }
+};
+
+/// a² / (a² + b²) (Veach 1997, section 9.2.4) for the strategy with a, against another one with b: densities times
+/// numbers of samples, not both 0.
+float power_heuristic(double a, double b) {
+    const double ratio = b / a;
+    return static_cast<float>(1 / (1 + ratio * ratio));
+}
+
+class PathIntegrator final : public WavefrontIntegrator {
+public:
+    PathIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
+        : WavefrontIntegrator(context, max_tile_pixels),
+          lights_{shading_.scene.lights.size()},
+          limit_(c_.settings.clamp > 0 ? c_.settings.clamp : kInfinity) {
+        states_.resize(capacity(max_tile_pixels));
+    }
+
+    static uint64_t bytes(uint32_t max_tile_pixels) noexcept {
+        return WavefrontIntegrator::bytes(max_tile_pixels) + capacity(max_tile_pixels) * sizeof(State);
+    }
+
+private:
+    /// What a path's next vertex has to know of the ones before.
+    struct State {
+        SurfacePoint from;        ///< the last vertex, as lights were sampled from it
+        float bsdf_pdf = 0;       ///< of the ray under way; 0 where no light sample could have found its direction
+        bool all_lights = false;  ///< at the last vertex, rather than one
+        uint32_t direct_bounces = ~0u;  ///< what has more bounces than this is not direct light
+        float radiance_scale = 1;       ///< what refraction has left in the throughput
+    };
+
+    void bounce(uint32_t depth) noexcept override {
+        each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) { shade(id, ray, hit, depth); });
+    }
+
+    void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
+        if (depth == 0) states_[id] = {};
+        if (!hit.found()) {
+            add_emission(id, environment_radiance(shading_, ray.d), shading_.environment_light, ray.d, nullptr, depth);
+            return;
+        }
+        const SurfacePoint point = surface_at(shading_, ray, hit);
+        const Vec3 wo = -ray.d;
+        const uint32_t light = shading_.instances[point.instance].area_light;
+        add_emission(id, emitted_radiance(shading_, point, wo), light, ray.d, &point, depth);
+        if (depth >= c_.settings.max_depth) return;
+        const Vertex vertex{facing(point, wo), make_bsdf(shading_, point), wo};
+        if (!is_specular(vertex.bsdf)) sample_lights(id, vertex, depth);
+        scatter(id, point, vertex, depth);
+    }
+
+    /// Emission that the ray from the last vertex has found, weighted against the light samples taken there.
+    void add_emission(uint32_t id, Rgb radiance, uint32_t light, Vec3 wi, const SurfacePoint* at,
+                      uint32_t depth) noexcept {
+        if (is_black(radiance)) return;
+        const State& state = states_[id];
+        float weight = 1;
+        double density = 0;
+        if (state.bsdf_pdf > 0) {
+            density = expected_samples(state, light) * pdf_light(shading_, light, state.from, wi, at);
+            weight = emission_weight(state.bsdf_pdf, density);
+        }
+        Path& path = this->path(id);
+        const Rgb contribution = clamped(path.throughput * radiance * weight, limit_of(state, depth));
+        path.radiance = path.radiance + contribution;
+        if (c_.recorder)
+            c_.recorder->emission(radiance, state.bsdf_pdf, static_cast<float>(density), weight, contribution);
+    }
+
+    void sample_lights(uint32_t id, const Vertex& at, uint32_t depth) noexcept {
+        if (lights_.lights == 0) return;
+        State& state = states_[id];
+        state.all_lights = state.direct_bounces == ~0u && lights_.lights <= kFewLights;
+        if (state.direct_bounces == ~0u) state.direct_bounces = depth + 1;
+        const float limit = limit_of(state, depth + 1);
+        if (state.all_lights) {
+            sample_all_lights(id, at, limit, [&](uint32_t n, float light_pdf, float bsdf_pdf) {
+                return light_weight(double(light_pdf) * n, bsdf_pdf);
+            });
+            return;
+        }
+        const Path& path = this->path(id);
+        const uint32_t dimension = kOneLightDimension + 4 * depth;
+        const Vec2 u = c_.sampler.get_2d(path.key, dimension);
+        const uint32_t part = c_.sampler.bits(path.key, dimension + 2);
+        const uint32_t light = lights_.chosen(c_.sampler.bits(path.key, dimension + 3));
+        const double probability = lights_.probability(light);
+        sample_towards(
+            id, at, light, part, u, path.throughput / static_cast<float>(probability), limit,
+            [&](float light_pdf, float bsdf_pdf) { return light_weight(light_pdf * probability, bsdf_pdf); });
+    }
+
+    void scatter(uint32_t id, const SurfacePoint& point, const Vertex& at, uint32_t depth) noexcept {
+        Path& path = this->path(id);
+        State& state = states_[id];
+        const uint32_t dimension = kBounceDimension + 4 * depth;
+        const float choice = c_.sampler.get_1d(path.key, dimension);
+        const Vec2 u = c_.sampler.get_2d(path.key, dimension + 2);
+        const std::optional<BsdfSample> next = sample(at.bsdf, at.wo, choice, u);
+        if (!next || is_black(next->weight)) return;
+        path.throughput = path.throughput * next->weight;
+        state.radiance_scale *= next->radiance_scale;
+        state.bsdf_pdf = next->specular ? 0 : next->pdf;
+        state.from = at.from;
+        float survival = 1;
+        if (depth + 1 > c_.settings.roulette_depth)
+            survival = min_of(max_component(path.throughput) / state.radiance_scale, 1.0f);
+        const bool survives = survival == 1 || c_.sampler.get_1d(path.key, dimension + 1) < survival;
+        if (c_.recorder)
+            c_.recorder->bounce(
+                {next->wi, next->weight, next->pdf, next->specular, next->transmitted, survival, survives});
+        if (!survives) return;
+        path.throughput = path.throughput / survival;
+        continue_along(id, spawn_ray(point, next->wi));
+    }
+
+    /// How many samples a vertex takes of `light` on average.
+    double expected_samples(const State& state, uint32_t light) const noexcept {
+        return state.all_lights ? light_sample_count(shading_, light) : lights_.probability(light);
+    }
+
+    /// The weight of a light sample. A light without a density cannot be found by the BSDF.
+    float light_weight(double density, float bsdf_pdf) const noexcept {
+        if (density == 0) return 1;
+        switch (c_.settings.light_sampling) {
+            case LightSampling::mis:
+                return power_heuristic(density, bsdf_pdf);
+            case LightSampling::light:
+                return 1;
+            case LightSampling::bsdf:
+                return 0;
+        }
+        return 1;
+    }
+
+    /// The weight of emission that the BSDF has found, which no light sample could have where their density is 0.
+    float emission_weight(float bsdf_pdf, double density) const noexcept {
+        if (density == 0) return 1;
+        switch (c_.settings.light_sampling) {
+            case LightSampling::mis:
+                return power_heuristic(bsdf_pdf, density);
+            case LightSampling::light:
+                return 0;
+            case LightSampling::bsdf:
+                return 1;
+        }
+        return 1;
+    }
+
+    float limit_of(const State& state, uint32_t bounces) const noexcept {
+        return bounces > state.direct_bounces ? limit_ : kInfinity;
+    }
+
+    const LightChoice lights_;
+    const float limit_;  ///< for contributions that are not direct light
+    std::vector<State> states_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_path(const RenderContext& context, uint32_t max_tile_pixels) {
+    return std::make_unique<PathIntegrator>(context, max_tile_pixels);
+}
+
+uint64_t path_bytes(uint32_t max_tile_pixels) noexcept { return PathIntegrator::bytes(max_tile_pixels); }
+
+}  // namespace steradian

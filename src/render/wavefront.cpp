@@ -1,0 +1,160 @@
+#include "render/wavefront.h"
+
+namespace steradian {
+namespace {
+
+constexpr uint32_t kBatchPaths = 4096;
+constexpr uint32_t kBatchShadowRays = 16384;
+
+}  // namespace
+
+uint32_t WavefrontIntegrator::capacity(uint32_t max_tile_pixels) noexcept {
+    return std::max(max_tile_pixels, kBatchPaths);
+}
+
+uint64_t WavefrontIntegrator::bytes(uint32_t max_tile_pixels) noexcept {
+    constexpr uint64_t path = sizeof(Path) + 2 * (sizeof(uint32_t) + sizeof(Ray)) + sizeof(Hit);
+    return capacity(max_tile_pixels) * path + kBatchShadowRays * (sizeof(Ray) + sizeof(Connection) + sizeof(uint8_t));
+}
+
+WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
+    : c_(context), shading_(context.scene.shading), capacity_(capacity(max_tile_pixels)) {
+    paths_.resize(capacity_);
+    active_.reserve(capacity_);
+    rays_.reserve(capacity_);
+    next_active_.reserve(capacity_);
+    next_rays_.reserve(capacity_);
+    hits_.resize(capacity_);
+    shadow_rays_.reserve(kBatchShadowRays);
+    connections_.reserve(kBatchShadowRays);
+    occluded_.resize(kBatchShadowRays);
+}
+
+bool WavefrontIntegrator::render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept {
+    counters_ = &counters;
+    const uint32_t pixels = unit.tile.pixels();
+    const uint32_t step = std::max(1u, capacity_ / pixels);
+    for (uint32_t done = 0; done < unit.samples; done += step) {
+        const uint32_t samples = std::min(step, unit.samples - done);
+        generate(unit, unit.first_sample + done, samples);
+        for (uint32_t depth = 0; !active_.empty(); ++depth) {
+            advance(depth);
+            if (stopped()) return false;
+        }
+        accumulate(pixels * samples, sums);
+    }
+    return true;
+}
+
+/// Camera rays, sample by sample and within a sample pixel by pixel.
+void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept {
+    active_.clear();
+    rays_.clear();
+    const uint32_t pixels = unit.tile.pixels();
+    for (uint32_t i = 0; i < pixels * samples; ++i) {
+        Path& path = paths_[i];
+        path.pixel = i % pixels;
+        path.x = unit.tile.x0 + path.pixel % unit.tile.width();
+        path.y = unit.tile.y0 + path.pixel / unit.tile.width();
+        path.key = c_.sampler.key(path.x, path.y, first_sample + i / pixels);
+        const FilterSample position = c_.filter.sample(c_.sampler.get_2d(path.key, kFilterDimension));
+        path.weight = position.weight;
+        path.throughput = {1, 1, 1};
+        path.radiance = {};
+        const Vec2 film{static_cast<float>(path.x) + 0.5f + position.offset.x,
+                        static_cast<float>(path.y) + 0.5f + position.offset.y};
+        if (c_.recorder) c_.recorder->camera(film, path.weight);
+        rays_.push_back(c_.camera.generate(film));
+        active_.push_back(i);
+    }
+    counters_->camera_rays += pixels * samples;
+}
+
+/// One bounce of all paths that are still on their way.
+void WavefrontIntegrator::advance(uint32_t depth) noexcept {
+    const std::span<Hit> hits(hits_.data(), rays_.size());
+    in_slices(rays_, [&](std::span<const Ray> rays, size_t first) {
+        const RayKind kind = depth == 0 ? RayKind::coherent : RayKind::incoherent;
+        c_.scene.accel.intersect(rays, hits.subspan(first, rays.size()), kind);
+    });
+    next_active_.clear();
+    next_rays_.clear();
+    bounce(depth);
+    trace_shadow_rays();
+    counters_->bounce_rays += next_rays_.size();
+    active_.swap(next_active_);
+    rays_.swap(next_rays_);
+}
+
+void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept {
+    TracedVertex vertex;
+    vertex.origin = ray.o;
+    vertex.direction = ray.d;
+    vertex.throughput = paths_[id].throughput;
+    vertex.escaped = !hit.found();
+    if (hit.found()) {
+        const SurfacePoint point = surface_at(shading_, ray, hit);
+        vertex.position = point.p;
+        vertex.normal = point.ns;
+        vertex.instance = hit.instance;
+        vertex.primitive = hit.prim;
+    }
+    c_.recorder->vertex(std::move(vertex));
+}
+
+void WavefrontIntegrator::continue_along(uint32_t id, const Ray& ray) noexcept {
+    next_rays_.push_back(ray);
+    next_active_.push_back(id);
+}
+
+void WavefrontIntegrator::connect(uint32_t id, const Ray& shadow_ray, Rgb contribution) noexcept {
+    if (shadow_rays_.size() == kBatchShadowRays) trace_shadow_rays();
+    shadow_rays_.push_back(shadow_ray);
+    connections_.push_back({id, contribution});
+}
+
+void WavefrontIntegrator::trace_shadow_rays() noexcept {
+    const std::span<uint8_t> occluded(occluded_.data(), shadow_rays_.size());
+    in_slices(shadow_rays_, [&](std::span<const Ray> rays, size_t first) {
+        c_.scene.accel.occluded(rays, occluded.subspan(first, rays.size()), RayKind::coherent);
+    });
+    for (size_t i = 0; i < occluded.size(); ++i) {
+        if (c_.recorder) c_.recorder->shadow(occluded[i] != 0);
+        if (occluded[i]) continue;
+        Rgb& radiance = paths_[connections_[i].path].radiance;
+        radiance = radiance + connections_[i].contribution;
+    }
+    counters_->shadow_rays += shadow_rays_.size();
+    shadow_rays_.clear();
+    connections_.clear();
+}
+
+/// Calls trace(some rays, index of the first) until all are done or the job is cancelled: a cancelled job must not
+/// wait for thousands of rays, which in a hostile scene take milliseconds each.
+template <class Trace>
+void WavefrontIntegrator::in_slices(std::span<const Ray> rays, Trace trace) const noexcept {
+    constexpr size_t kSlice = 512;
+    for (size_t first = 0; first < rays.size() && !stopped(); first += kSlice) {
+        const std::span<const Ray> slice = rays.subspan(first, std::min(kSlice, rays.size() - first));
+        trace(slice, first);
+        c_.rays.fetch_add(slice.size(), std::memory_order_relaxed);
+    }
+}
+
+void WavefrontIntegrator::accumulate(uint32_t count, std::span<RgbSum> sums) noexcept {
+    for (uint32_t i = 0; i < count; ++i) {
+        const Path& path = paths_[i];
+        const Rgb l = path.radiance;
+        const PixelSample sample{path.x, path.y, path.key.sample, l};
+        const bool good = is_finite(l) && l.r >= 0 && l.g >= 0 && l.b >= 0;
+        if (good) {
+            sums[path.pixel].add(l, path.weight);
+            counters_->good(sample);
+        } else {
+            counters_->bad(sample);
+        }
+        if (c_.recorder) c_.recorder->finish(l, !good);
+    }
+}
+
+}  // namespace steradian

@@ -1,0 +1,145 @@
+// What integrators share: the camera samples of a tile as arrays of path states that advance together, one bounce at a
+// time, so that the acceleration structure gets spans of rays; and a queue of shadow rays.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "render/integrator.h"
+#include "render/recorder.h"
+#include "shading/bsdf.h"
+#include "shading/light.h"
+
+namespace steradian {
+
+/// Which numbers of a sample are used for what. Groups of four belong together (sampler.h).
+enum Dimension : uint32_t {
+    kFilterDimension = 0,             // and 1; 2 and 3 are for a lens
+    kBounceDimension = 4,             // four per bounce: choice of lobe, Russian roulette, direction
+    kLightDimension = 0x40000000,     // four per light, where all are sampled: position, choice of part, unused
+    kOneLightDimension = 0x80000000,  // four per bounce, where one light is sampled: position, choice of part, of light
+};
+
+/// Scaled down where its largest channel is above `limit`. What is not finite stays so, and is counted.
+inline Rgb clamped(Rgb contribution, float limit) {
+    const float most = max_component(contribution);
+    return most > limit && is_finite(contribution) ? contribution * (limit / most) : contribution;
+}
+
+class WavefrontIntegrator : public Integrator {
+public:
+    WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels);
+    bool render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept final;
+
+    /// Paths under way at a time, and what they take.
+    static uint32_t capacity(uint32_t max_tile_pixels) noexcept;
+    static uint64_t bytes(uint32_t max_tile_pixels) noexcept;
+
+protected:
+    struct Path {
+        SampleKey key;
+        uint32_t x, y, pixel;
+        float weight;  ///< the filter's
+        Rgb throughput, radiance;
+    };
+
+    /// Shades the hits of all paths that are still on their way: calls each_hit. `depth` bounces lie behind them.
+    virtual void bounce(uint32_t depth) noexcept = 0;
+
+    /// Calls shade(id of the path, ray, hit) for each, in order.
+    template <class Shade>
+    void each_hit(Shade shade) noexcept {
+        for (size_t i = 0; i < rays_.size() && !stopped(); ++i) {
+            if (c_.recorder) record_vertex(active_[i], rays_[i], hits_[i]);
+            shade(active_[i], rays_[i], hits_[i]);
+        }
+    }
+    /// The path goes on along `ray`.
+    void continue_along(uint32_t id, const Ray& ray) noexcept;
+    /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`.
+    void connect(uint32_t id, const Ray& shadow_ray, Rgb contribution) noexcept;
+
+    /// A point where light is gathered.
+    struct Vertex {
+        SurfacePoint from;  ///< facing wo: the side that receives
+        Bsdf bsdf;
+        Vec3 wo;
+    };
+    /// One direction towards one light. `scale` stands for the path's throughput over the expected number of samples,
+    /// `limit` is for what comes of it (see clamped()), and weight(light's density, BSDF's) gives the sample's weight.
+    template <class Weight>
+    void sample_towards(uint32_t id, const Vertex& at, uint32_t light, uint32_t choice, Vec2 u, Rgb scale, float limit,
+                        Weight weight) noexcept;
+    /// Every light, as often as it wants; `weight` is also told how often that is: weight(n, light's density, BSDF's).
+    /// Samples of one light continue one low-discrepancy sequence: sample i of n within camera sample s is its point
+    /// s n + i.
+    template <class Weight>
+    void sample_all_lights(uint32_t id, const Vertex& at, float limit, Weight weight) noexcept;
+
+    Path& path(uint32_t id) noexcept { return paths_[id]; }
+    bool stopped() const noexcept { return c_.cancelled.load(std::memory_order_relaxed); }
+
+    const RenderContext& c_;
+    const ShadingScene& shading_;
+
+private:
+    /// A shadow ray's owner and what it brings when nothing is in the way.
+    struct Connection {
+        uint32_t path;
+        Rgb contribution;
+    };
+
+    void generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept;
+    void advance(uint32_t depth) noexcept;
+    void trace_shadow_rays() noexcept;
+    void record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept;
+    void accumulate(uint32_t count, std::span<RgbSum> sums) noexcept;
+    template <class Trace>
+    void in_slices(std::span<const Ray> rays, Trace trace) const noexcept;
+
+    const uint32_t capacity_;
+    Counters* counters_ = nullptr;  ///< of the unit under way
+    std::vector<Path> paths_;
+    std::vector<uint32_t> active_, next_active_;
+    std::vector<Ray> rays_, next_rays_;  ///< of the active paths, in the same order
+    std::vector<Hit> hits_;
+    std::vector<Ray> shadow_rays_;
+    std::vector<Connection> connections_;
+    std::vector<uint8_t> occluded_;
+};
+
+template <class Weight>
+void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t light, uint32_t choice, Vec2 u,
+                                         Rgb scale, float limit, Weight weight) noexcept {
+    const std::optional<LightSample> towards = sample_light(shading_, light, at.from, choice, u);
+    if (!towards) return;
+    const float density = towards->pdf > 0 ? towards->pdf : 1.0f;
+    const BsdfEval scattered = eval(at.bsdf, at.wo, towards->wi);
+    const float mis_weight = weight(towards->pdf, scattered.pdf);
+    const Rgb contribution = clamped(scale * scattered.f_cos * (towards->radiance / density) * mis_weight, limit);
+    const bool brings = !is_black(contribution);
+    if (c_.recorder)
+        c_.recorder->light(
+            {light, {}, towards->wi, towards->pdf, scattered.pdf, mis_weight, contribution, brings, false});
+    if (brings) connect(id, towards->shadow_ray, contribution);
+}
+
+template <class Weight>
+void WavefrontIntegrator::sample_all_lights(uint32_t id, const Vertex& at, float limit, Weight weight) noexcept {
+    const SampleKey own = path(id).key;
+    const auto lights = static_cast<uint32_t>(shading_.scene.lights.size());
+    for (uint32_t light = 0; light < lights && !stopped(); ++light) {
+        const uint32_t n = light_sample_count(shading_, light);
+        const Rgb scale = path(id).throughput / static_cast<float>(n);
+        const uint32_t dimension = kLightDimension + 4 * light;
+        for (uint32_t i = 0; i < n; ++i) {
+            const SampleKey key{own.pixel, own.sample * n + i};
+            const Vec2 u = c_.sampler.get_2d(key, dimension);
+            const uint32_t choice = c_.sampler.bits(key, dimension + 2);
+            sample_towards(id, at, light, choice, u, scale, limit,
+                           [&](float light_pdf, float bsdf_pdf) { return weight(n, light_pdf, bsdf_pdf); });
+        }
+    }
+}
+
+}  // namespace steradian

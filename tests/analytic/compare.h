@@ -1,0 +1,16 @@
+// Whether two ways to render a scene have the same mean in every pixel.
+#pragma once
+
+#include "analytic/check.h"
+
+namespace steradian::analytic {
+
+/// Per pixel and channel: the means of pictures of independent seeds by both settings, by Welch's t-test. The chance of
+/// a false alarm anywhere is 1 in 1000, by Šidák's correction. Both must be noisy in most pixels where they are not
+/// black, so that it is a comparison of noise.
+void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b);
+
+/// How many pixels and channels of the two differ by such a test.
+size_t different_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b);
+
+}  // namespace steradian::analytic

@@ -1,0 +1,117 @@
+// Path tracing: what must have the same mean has it, in every pixel.
+#include <gtest/gtest.h>
+
+#include "analytic/compare.h"
+#include "support/support.h"
+
+namespace steradian::analytic {
+namespace {
+
+/// Coloured walls, a mirror and a glass ball, lights of every kind: one-sided and two-sided, a mesh, a sky that comes
+/// in at the front. Small enough to be rendered many times.
+SceneText room() {
+    SceneText s;
+    s.look({0, 1, 5}, {0, 1, 0}, 27).size(12, 12).integrator("path");
+    s.material("red", diffuse({0.63, 0.065, 0.05}))
+        .material("green", diffuse({0.14, 0.45, 0.091}))
+        .material("white", diffuse({0.725, 0.71, 0.68}, true));
+    s.material("mirror", mirror(0.9)).material("glass", glass(1.5)).material("black", diffuse(0.0));
+    s.object(ground({0, 0, 0}, 1, 1, "white"))
+        .object(ceiling({0, 2, 0}, 1, 1, "white"))
+        .object(rectangle({0, 1, -1}, {1, 0, 0}, {0, 1, 0}, "white"));
+    s.object(rectangle({-1, 1, 0}, {0, 1, 0}, {0, 0, 1}, "red"))
+        .object(rectangle({1, 1, 0}, {0, 0, 1}, {0, 1, 0}, "green"));
+    s.object(sphere({-0.45, 0.4, -0.2}, 0.4, "mirror")).object(sphere({0.45, 0.3, 0.3}, 0.3, "glass"));
+    s.object(ceiling({0, 1.98, 0}, 0.4, 0.3, "black").set("light", emission({9, 7, 5}).set("light_samples", 2)));
+    s.object(disk({0.5, 1.2, -0.6}, {-1, 0.2, 1}, 0.25, "white").set("light", emission({1, 2, 4}, true)));
+    s.object(sphere({-0.5, 1.4, -0.3}, 0.2, "red").set("light", emission({4, 1, 1})));
+    s.object(
+        mesh({{0, 0.9, -0.5}, {0.3, 0.9, -0.4}, {0.1, 1.3, -0.5}, {-0.2, 0.8, -0.2}}, {{0, 1, 2}, {0, 2, 3}}, "white")
+            .set("light", emission({0.5, 2, 1})));
+    s.light(point_light({0.2, 0.5, 0.8}, 0.3)).light(environment({0.3, 0.4, 0.6}));
+    return s.depth(5);
+}
+
+RenderSettings independent(const PreparedCase& scene) {
+    RenderSettings out = scene.settings;
+    out.sampler = SamplerKind::independent;
+    return out;
+}
+
+TEST(Paths, AtDepthOneEqualDirectLight) {
+    const PreparedCase scene(room().depth(1).str(), {});
+    RenderSettings path = independent(scene), direct = path;
+    direct.integrator = IntegratorKind::direct;
+    expect_same_means(scene, path, direct);
+}
+
+TEST(Paths, LightSamplesAloneAgreeWithBoth) {
+    const PreparedCase scene(room().depth(3).str(), {});
+    RenderSettings both = independent(scene), light = both;
+    light.light_sampling = LightSampling::light;
+    expect_same_means(scene, both, light);
+}
+
+TEST(Paths, BsdfSamplesAloneAgreeWithBoth) {
+    const PreparedCase scene(room().depth(3).str(), {});
+    RenderSettings both = independent(scene), bsdf = both;
+    bsdf.light_sampling = LightSampling::bsdf;
+    expect_same_means(scene, both, bsdf);
+}
+
+TEST(Paths, RussianRouletteKeepsTheMean) {
+    const PreparedCase scene(room().str(), {});
+    RenderSettings often = independent(scene), never = often;
+    often.roulette_depth = 0;
+    never.roulette_depth = never.max_depth;
+    expect_same_means(scene, often, never);
+    // And it takes place.
+    often.samples_per_pixel = never.samples_per_pixel = 16;
+    EXPECT_LT(scene.render(often).statistics.bounce_rays, scene.render(never).statistics.bounce_rays * 7 / 10);
+}
+
+TEST(Paths, RouletteBeyondTheDepthNeverStrikes) {
+    const PreparedCase scene(room().str(), {});
+    RenderSettings at = scene.settings, beyond = at;
+    at.roulette_depth = at.max_depth;
+    beyond.roulette_depth = kMaxDepth;
+    EXPECT_EQ(image_hash(scene.picture(at)), image_hash(scene.picture(beyond)));
+}
+
+/// The comparison itself: one more bounce is seen.
+TEST(Paths, AnotherDepthIsAnotherPicture) {
+    const PreparedCase scene(room().str(), {});
+    RenderSettings deep = independent(scene), shallow = deep;
+    shallow.max_depth = deep.max_depth - 1;
+    EXPECT_GT(different_means(scene, deep, shallow), 0u);
+}
+
+TEST(Paths, ClampingOnlyTakesIndirectLight) {
+    const PreparedCase scene(room().str(), {});
+    RenderSettings all = scene.settings, clamped = all, direct = all;
+    all.samples_per_pixel = 16;
+    clamped = direct = all;
+    clamped.clamp = 0.02f;
+    direct.max_depth = 1;
+    const Image a = scene.picture(all), c = scene.picture(clamped);
+    EXPECT_LT(mean_over(c, {0, 0, 12, 12, {}, false}, 0), mean_over(a, {0, 0, 12, 12, {}, false}, 0) * 0.98);
+    EXPECT_TRUE(c.metadata.contains("steradian:clamp"));
+    EXPECT_FALSE(a.metadata.contains("steradian:clamp"));
+    // Without specular surfaces nothing of depth 1 is indirect.
+    clamped.max_depth = 1;
+    EXPECT_EQ(image_hash(scene.picture(clamped)), image_hash(scene.picture(direct)));
+}
+
+TEST(Paths, AreTheSameBitsInTilesAndCrops) {
+    const PreparedCase scene(room().str(), {});
+    RenderSettings settings = scene.settings;
+    settings.samples_per_pixel = 70;
+    const Image whole = scene.picture(settings);
+    settings.crop = Crop{3, 5, 10, 9};
+    const Image part = scene.picture(settings);
+    for (size_t y = 0; y < 4; ++y)
+        for (size_t i = 0; i < 7 * 3; ++i) ASSERT_EQ(part.pixels[y * 21 + i], whole.pixels[((y + 5) * 12 + 3) * 3 + i]);
+}
+
+}  // namespace
+}  // namespace steradian::analytic
