@@ -224,6 +224,40 @@ TEST(Oracle, PacketsAlongLongRows) {
         compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
 }
 
+/// Sheets that are a few floats of t apart, seen in packets from far away, in no order of their ids: which comes first
+/// is less than what a float computation of t is off by. The sheets lie along an axis, where the slope adds nothing to
+/// that.
+TEST(Oracle, PacketsTellSheetsApart) {
+    TestScene scene("sheets");
+    TriangleMesh mesh;
+    constexpr int kSheets = 24;
+    for (int i = 0; i < kSheets; ++i) {
+        const float z = -100 - static_cast<float>(i * 7 % kSheets) * 0x1p-17f;  // a float at 100 is 2^-17 wide
+        mesh.add({-9, -9, z}, {9, -9, z}, {9, 9, z});
+        mesh.add({-9, -9, z}, {9, 9, z}, {-9, 9, z});
+    }
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(3);
+    const BruteForce brute(scene);
+    const std::vector<Accel> built = build_all(scene);
+    Random random(6);
+    std::vector<Ray> rays;
+    for (size_t packet = 0; packet < by_tier<size_t>(100, 4000); ++packet) {
+        const Vec3 to{static_cast<float>(8 * random.unit()), static_cast<float>(8 * random.unit()), -100};
+        for (int i = 0; i < 16; ++i) {
+            Ray ray{{0.25f, 0.5f, 0}, 0, to + random.in_cube(0.2), kInfinity};
+            // Some of them end within the sheets.
+            if (packet % 3 == 0) ray.tmax = 1 + static_cast<float>(i) * 0x1p-23f;
+            if (packet % 3 == 1) ray.tmin = 1 + static_cast<float>(i) * 0x1p-23f;
+            rays.push_back(ray);
+        }
+    }
+    std::vector<Hit> expected(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+    for (size_t v = 0; v < built.size(); ++v)
+        compare(scene, variants()[v], built[v], rays, expected, RayKind::coherent);
+}
+
 /// A rectangle and, coincident with it, a triangle that is found last, because its box reaches far; in between, what a
 /// ray takes from its packet is visited, and so the rectangle is hit first. At the same t the smaller instance wins.
 TEST(Oracle, PacketsKeepWhatWasHitOnTheWay) {

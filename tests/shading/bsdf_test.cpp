@@ -68,7 +68,8 @@ TEST(Bsdf, SamplesFollowTheDensity) {
                     const BsdfEval e = eval(bsdf, wo, s->wi);
                     EXPECT_NEAR(s->pdf, e.pdf, 1e-5f);
                     EXPECT_NEAR(s->weight.g * s->pdf, e.f_cos.g, 1e-5f);
-                    EXPECT_FALSE(s->transmitted);
+                    const Vec3 ng = normals.ng;
+                    EXPECT_EQ(s->transmitted, (dot(s->wi, ng) > 0) != (dot(wo, ng) > 0));
                     return s->wi;
                 };
                 const auto density = [&](Vec3 wi) { return static_cast<double>(eval(bsdf, wo, wi).pdf); };
