@@ -5,9 +5,10 @@
 namespace steradian::bench {
 namespace {
 
-AccelOptions with_builder(BvhBuilder builder) {
+AccelOptions with(BvhBuilder builder, BvhLayout layout = BvhLayout::full) {
     AccelOptions options;
     options.builder = builder;
+    options.layout = layout;
     return options;
 }
 
@@ -67,10 +68,11 @@ public:
 }  // namespace
 
 const std::vector<OurSetting>& our_settings() {
-    static const std::vector<OurSetting> settings = {{"sah", with_builder(BvhBuilder::sah)},
-                                                     {"median", with_builder(BvhBuilder::median)},
-                                                     {"fast", with_builder(BvhBuilder::fast)},
-                                                     {"high-quality", with_builder(BvhBuilder::high_quality)}};
+    static const std::vector<OurSetting> settings = {{"sah", with(BvhBuilder::sah)},
+                                                     {"median", with(BvhBuilder::median)},
+                                                     {"fast", with(BvhBuilder::fast)},
+                                                     {"high-quality", with(BvhBuilder::high_quality)},
+                                                     {"compact", with(BvhBuilder::sah, BvhLayout::compact)}};
     return settings;
 }
 

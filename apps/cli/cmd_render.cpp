@@ -28,7 +28,7 @@ struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
     SettingsOptions settings;
-    std::string bvh = "sah", isa = "auto";
+    std::string bvh = "sah", bvh_layout = "full", isa = "auto";
     Execution execution;
     PictureOptions picture;
     bool quiet = false, json = false;
@@ -196,6 +196,7 @@ int run_render(const RenderOptions& given) {
     RenderOptions o = given;
     if (o.outputs.empty() && !o.json) o.outputs.push_back(default_output(o.scene));
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
+    o.execution.bvh_layout = *find_name<BvhLayout>(o.bvh_layout);
     o.execution.isa = *find_name<Isa>(o.isa);
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     const auto said = parse_overrides(o.settings, o.execution);
@@ -253,6 +254,11 @@ void add_render(CLI::App& app, Action& action) {
                "Builder of the hierarchy: sah, median, fast (for previews) or high-quality (slow to build, fast to "
                "trace); never changes the picture")
         ->default_str(o->bvh)
+        ->group("Execution");
+    add_choice(c, "--bvh-layout", o->bvh_layout, names_of<BvhLayout>(),
+               "Memory of the hierarchy: full, or compact for scenes that are large (about two thirds of\n"
+               "the bytes, slower); never changes the picture")
+        ->default_str(o->bvh_layout)
         ->group("Execution");
     add_choice(c, "--isa", o->isa, names_of<Isa>(),
                "Instructions of the ray kernels: scalar, sse4, avx2, avx512, neon or auto (the best that\n"

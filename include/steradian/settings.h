@@ -60,6 +60,9 @@ inline constexpr uint64_t kMaxPixels = uint64_t(1) << 30;                ///< wi
 /// overlap.
 enum class BvhBuilder : uint8_t { sah, median, fast, high_quality };
 
+/// How the hierarchy lies in memory: as it is, or in fewer bytes at the price of some speed.
+enum class BvhLayout : uint8_t { full, compact };
+
 /// Which instructions the ray kernels use; all compute the same bits. `automatic` is the best that the machine has,
 /// unless the environment variable STERADIAN_ISA names another one.
 enum class Isa : uint8_t { automatic, scalar, sse4, avx2, avx512, neon };
@@ -73,6 +76,7 @@ struct Execution {
     BvhBuilder bvh = BvhBuilder::sah;
     uint32_t bvh_max_depth = 64;
     Isa isa = Isa::automatic;
+    BvhLayout bvh_layout = BvhLayout::full;
     uint32_t fireflies = 0;  ///< how many of the brightest samples the statistics list, 0 … kMaxFireflies
 };
 

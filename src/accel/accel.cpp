@@ -23,6 +23,7 @@ GeometrySize size_of(const Geometry& geometry) { return {geometry.index(), primi
 
 /// The levels and what they refer to.
 struct Built {
+    BvhLayout layout = BvhLayout::full;
     std::vector<GeometrySize> sizes;
     std::vector<bool> on_upper_level;  ///< by geometry
     Level upper;
@@ -67,10 +68,11 @@ Status check(std::span<const Geometry> geometries, std::span<const GeometryInsta
                      {}};
     size_t items = instances.size();
     for (const Geometry& g : geometries) items += primitive_count(g);
-    if (items >= ChildRef::kMaxItems)
-        return make_error(ErrorCode::resources, std::to_string(items) +
-                                                    " primitives and instances, more than the limit of " +
-                                                    std::to_string(ChildRef::kMaxItems - 1));
+    const size_t limit = max_items(options.layout);
+    if (items > limit)
+        return make_error(
+            ErrorCode::resources,
+            std::to_string(items) + " primitives and instances, more than the limit of " + std::to_string(limit));
     for (size_t i = 0; i < instances.size(); ++i) {
         if (instances[i].geometry >= geometries.size())
             return Error{ErrorCode::bad_input,
@@ -128,6 +130,7 @@ ItemKind kind_of(const Geometry& geometry) {
 BvhOptions bvh_options(const AccelOptions& options, ItemKind mostly) {
     BvhOptions out;
     out.builder = options.builder, out.max_depth = options.max_depth, out.mostly = mostly;
+    out.layout = options.layout;
     return out;
 }
 
@@ -218,10 +221,11 @@ double cost_of(const Built& built) {
 AccelStatistics count(std::span<const Geometry> geometries, const Built& built) {
     AccelStatistics s;
     const auto add = [&](const Level& level) {
-        s.nodes += level.nodes.size();
+        s.nodes += level.nodes.size() + level.compact.nodes.size();
         s.leaves += level.leaves;
         s.depth = max_of(s.depth, level.depth);
-        s.bytes += bytes_of(level.nodes) + bytes_of(level.blocks) + bytes_of(level.entries);
+        s.bytes += bytes_of(level.nodes) + bytes_of(level.blocks) + bytes_of(level.entries) +
+                   bytes_of(level.compact.nodes) + bytes_of(level.compact.blocks);
     };
     for (const Geometry& g : geometries) s.primitives += primitive_count(g);
     for (const Level& level : built.levels) add(level);
@@ -237,9 +241,11 @@ Error other_scene(const std::string& what) {
     return {ErrorCode::bad_input, what + " is not what the hierarchy was built over; build it anew", {}, {}, {}};
 }
 
-/// That there is the same of everything; not whether it is sound.
+/// That it can be refitted, and that there is the same of everything; not whether it is sound.
 Status check_same(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                   const Built& built) {
+    if (built.layout == BvhLayout::compact)
+        return make_error(ErrorCode::usage, "a hierarchy in the compact layout cannot be refitted; build it anew");
     if (geometries.size() != built.sizes.size())
         return other_scene("a number of " + std::to_string(geometries.size()) + " geometries");
     if (instances.size() != built.instances.size())
@@ -290,13 +296,14 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
     const auto started = std::chrono::steady_clock::now();
     try {
         if (Status status = check(geometries, instances, options); !status) return status.error();
-        const Result<const Kernels*> kernels = select_kernels(options.isa);
+        const Result<const Kernels*> kernels = select_kernels(options.isa, options.layout);
         if (!kernels) return kernels.error();
         auto data = std::make_unique<Data>();
         data->kernels = *kernels;
         const std::vector<bool> upper = upper_geometries(geometries, instances);
         Cancellation cancelled(options.cancelled, options.progress, work_of(geometries, instances, upper));
         Built& built = data->built;
+        built.layout = options.layout;
         built.on_upper_level = upper;
         for (const Geometry& geometry : geometries) built.sizes.push_back(size_of(geometry));
         if (Status status = build_levels(geometries, upper, options, cancelled, built); !status) return status.error();

@@ -52,6 +52,7 @@ struct GeometryInstance {
 
 struct AccelOptions {
     BvhBuilder builder = BvhBuilder::sah;
+    BvhLayout layout = BvhLayout::full;
     uint32_t max_depth = 64;  ///< 1 … 64 levels below a root; a leaf there takes whatever is left
     Isa isa = Isa::automatic;
     std::function<bool()> cancelled;  ///< asked now and then during the build, by one thread at a time
@@ -83,15 +84,16 @@ public:
     /// (bad_input); zero-area ones are fine and are never hit. Refused as well (bad_input): indices of vertices or
     /// geometries that do not exist; cut_outs of another size; a transform that is singular, scales beyond 1e±30 or
     /// leads beyond kMaxCoordinate. `usage` for a max_depth out of range or an instruction set that the machine lacks,
-    /// `resources` when memory runs out or there are 2^27 primitives and instances or more, `render_failed` when
-    /// cancelled. Uses the workers of the caller's arena (base/parallel.h).
+    /// `resources` when memory runs out or there are 2^27 primitives and instances or more (76 million in the compact
+    /// layout), `render_failed` when cancelled. Uses the workers of the caller's arena (base/parallel.h).
     static Result<Accel> build(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                                const AccelOptions& options = {});
     /// The same geometries and instances with other vertices, parameters and transforms: much faster than a
     /// new build, and the answers are exactly those of a new build; but the further things move against each other, the
     /// more boxes overlap, and the slower rays become (statistics().cost). The spans replace those given to build.
     ///
-    /// On failure nothing has changed. bad_input for what build refuses; for other numbers of geometries, primitives or
+    /// On failure nothing has changed. `usage` for a hierarchy in the compact layout, which is not made for this: build
+    /// it anew. bad_input for what build refuses; for other numbers of geometries, primitives or
     /// instances, other kinds of geometries or other geometries in the instances; and for a transform of a geometry
     /// that is in one place only and was not transformed when the hierarchy was built. `resources` when memory runs
     /// out. Not while anybody else uses the Accel. Uses the workers of the caller's arena.

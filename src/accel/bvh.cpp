@@ -6,6 +6,7 @@
 
 #include "accel/binary_tree.h"
 #include "accel/build_fast.h"
+#include "accel/compact.h"
 #include "accel/reinsert.h"
 #include "accel/split_spatial.h"
 #include "base/parallel.h"
@@ -122,7 +123,7 @@ private:
 
 void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled,
                         BinaryPool& pool, Bvh& out) {
-    const size_t count = primitives.size(), most = size_t(ChildRef::kMaxItems) - 1;
+    const size_t count = primitives.size(), most = max_items(options.layout);
     const size_t added = options.split_boxes ? std::min(count / kPrimitivesPerCut, most - count) : 0;
     std::vector<BuildPrimitive> work(count + added);
     std::copy(primitives.begin(), primitives.end(), work.begin());

@@ -83,14 +83,15 @@ struct BvhOptions {
     ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
     uint64_t work = kDivideWork;        ///< to report for a primitive once it is in a leaf
     bool split_boxes = false;  ///< BvhBuilder::high_quality may; not where rays are transformed, see SpatialSplit
+    BvhLayout layout = BvhLayout::full;  ///< what is to be made of the hierarchy; it limits how much may be added
 };
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the
 /// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. A leaf holds one kind.
 /// Uses all workers of the caller's arena; the result does not depend on their number. Check `cancelled.poll()`
-/// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. Fewer than ChildRef::kMaxItems
-/// boxes, all of them finite; reorders them. With split boxes a primitive may be in several leaves, and there are at
-/// most half as many again.
+/// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. At most max_items() boxes
+/// (compact.h), all of them finite; reorders them. With split boxes a primitive may be in several leaves, and there are
+/// at most half as many again.
 Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled);
 
 }  // namespace steradian

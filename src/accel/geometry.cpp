@@ -123,6 +123,13 @@ const LevelPart& part_of(std::span<const LevelPart> parts, uint32_t id) {
              1);
 }
 
+PackedTriangle triangle_of(std::span<const Geometry> geometries, std::span<const LevelPart> parts, uint32_t id) {
+    const LevelPart& part = part_of(parts, id);
+    const auto& mesh = std::get<TriangleGeometry>(geometries[part.geometry]);
+    const uint32_t* corners = &mesh.indices[3 * size_t(id - part.first)];
+    return {id, {mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]}};
+}
+
 /// Blocks of these ids, without their vertices.
 LargeArray<TriangleBlock> blocks_of(std::span<const uint32_t> ids) {
     LargeArray<TriangleBlock> blocks(ids.size() / kBlock);
@@ -135,8 +142,11 @@ LargeArray<TriangleBlock> blocks_of(std::span<const uint32_t> ids) {
 }  // namespace
 
 LevelView Level::view() const {
+    const void* none = &kNoBlocks;
+    if (!compact.nodes.empty())
+        return {compact.nodes.data(), compact.blocks.empty() ? none : compact.blocks.data(), entries.data()};
     if (nodes.empty()) return {};
-    return {nodes.data(), blocks.empty() ? &kNoBlocks : blocks.data(), entries.data()};
+    return {nodes.data(), blocks.empty() ? none : blocks.data(), entries.data()};
 }
 
 Box shape_bounds(const Geometry& geometry, uint32_t prim) {
@@ -156,13 +166,9 @@ void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> g
         for (TriangleBlock& block : blocks.subspan(begin, end - begin))
             for (size_t lane = 0; lane < kBlock; ++lane) {
                 const uint32_t source = block.prim[lane] == kNoHit ? block.prim[0] : block.prim[lane];
-                const LevelPart& part = part_of(parts, source);
-                const auto& mesh = std::get<TriangleGeometry>(geometries[part.geometry]);
-                const uint32_t* corners = &mesh.indices[3 * size_t(source - part.first)];
-                for (size_t which = 0; which < 3; ++which) {
-                    const Vec3 p = mesh.positions[corners[which]];
-                    for (int axis = 0; axis < 3; ++axis) block.vertex[which][axis][lane] = p[axis];
-                }
+                const PackedTriangle t = triangle_of(geometries, parts, source);
+                for (size_t which = 0; which < 3; ++which)
+                    for (int axis = 0; axis < 3; ++axis) block.vertex[which][axis][lane] = t.corner[which][axis];
             }
     });
 }
@@ -196,8 +202,15 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
                   Cancellation& cancelled) {
     Bvh bvh = build_bvh(primitives, options, cancelled);
     if (cancelled.poll()) return {};
+    const uint64_t work = primitives.size() * kPackWork;
+    CompactLevel compact;
+    if (options.layout == BvhLayout::compact) {
+        const auto triangle = [&](uint32_t id) { return triangle_of(geometries, parts, id); };
+        compact = make_compact(bvh, triangle, cancelled, work);
+    }
     Level level = fill_level(std::move(bvh), geometries, parts, first_instance);
-    cancelled.advance(primitives.size() * kPackWork);
+    level.compact = std::move(compact);
+    if (options.layout == BvhLayout::full) cancelled.advance(work);
     return level;
 }
 

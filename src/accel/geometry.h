@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "accel/bvh.h"
+#include "accel/compact.h"
+#include "accel/triangle_block.h"
 #include "accel/world.h"
 
 namespace steradian {
@@ -13,6 +15,7 @@ namespace steradian {
 struct Level {
     LargeArray<WideNode> nodes;
     LargeArray<TriangleBlock> blocks;
+    CompactLevel compact;  ///< instead of nodes and blocks
     std::vector<LeafEntry> entries;
     Box bounds;
     uint64_t leaves = 0;
@@ -44,8 +47,8 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   Cancellation& cancelled);
 
-/// What build_level made, for the same parts with other vertices, shapes and places of instances: boxes and orders are
-/// computed anew, from the leaves up, by all workers of the caller's arena.
+/// What build_level made in the full layout, for the same parts with other vertices, shapes and places of instances:
+/// boxes and orders are computed anew, from the leaves up, by all workers of the caller's arena.
 void refit_level(Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
                  std::span<const PlacedGeometry> instances);
 
@@ -53,7 +56,7 @@ void refit_level(Level& level, std::span<const Geometry> geometries, std::span<c
 /// with the costs of the hierarchies that the instances of the upper level lead to.
 double expected_cost(const Level& level, std::span<const double> instance_costs);
 
-/// The rest of build_level: what the leaves of a hierarchy hold. An id may be in several of them.
+/// The rest of build_level, in the full layout: what the leaves of a hierarchy hold. An id may be in several of them.
 Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
                  uint32_t first_instance);
 

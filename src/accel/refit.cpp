@@ -1,5 +1,6 @@
 // The same hierarchy over geometry that has moved.
 #include <algorithm>
+#include <bit>
 
 #include "accel/children.h"
 #include "accel/geometry.h"
@@ -81,20 +82,36 @@ void refit_level(Level& level, std::span<const Geometry> geometries, std::span<c
     level.bounds = Refitter(level, geometries, parts, instances).refit(0, static_cast<uint32_t>(level.nodes.size()));
 }
 
+namespace {
+
+uint32_t child_count(const CompactNode& node) { return static_cast<uint32_t>(std::popcount(node.present())); }
+Box child_box(const CompactNode& node, uint32_t i) { return node.box(i); }
+
+/// Blocks, shapes or instances of a leaf.
+uint32_t items_of(const LargeArray<TriangleBlock>&, uint32_t leaf) { return ChildRef::count(leaf); }
+uint32_t items_of(const LargeArray<uint64_t>& blocks, uint32_t leaf) {
+    if (ChildRef::kind(leaf) != ItemKind::block) return ChildRef::count(leaf);
+    uint32_t count = 1;
+    const uint64_t* at = &blocks[CompactRef::offset(leaf)];
+    for (CompactBlock block(at); !block.last(); block = CompactBlock(block.unit + block.units())) ++count;
+    return count;
+}
+
 /// In chunks that do not depend on the workers, added in order.
-double expected_cost(const Level& level, std::span<const double> instance_costs) {
+template <class Node, class Block>
+double cost_of(const Level& level, const LargeArray<Node>& nodes, const LargeArray<Block>& blocks,
+               std::span<const double> instance_costs) {
     constexpr size_t kGrain = 4096;
     const double whole = level.bounds.half_area();
-    if (level.nodes.empty()) return 0;
-    std::vector<double> parts((level.nodes.size() + kGrain - 1) / kGrain);
-    parallel_for(level.nodes.size(), kGrain, [&](size_t begin, size_t end) {
+    std::vector<double> parts((nodes.size() + kGrain - 1) / kGrain);
+    parallel_for(nodes.size(), kGrain, [&](size_t begin, size_t end) {
         double sum = 0;
-        for (const WideNode& node : std::span(level.nodes).subspan(begin, end - begin))
+        for (const Node& node : std::span(nodes).subspan(begin, end - begin))
             for (uint32_t i = 0; i < child_count(node); ++i) {
                 const uint32_t child = node.child[i];
                 double cost = 1;
                 if (ChildRef::is_leaf(child)) {
-                    cost = ChildRef::count(child);
+                    cost = items_of(blocks, child);
                     if (ChildRef::kind(child) == ItemKind::instance)
                         for (uint32_t k = 0; k < ChildRef::count(child); ++k)
                             cost += instance_costs[level.entries[ChildRef::first(child) + k].instance];
@@ -107,6 +124,14 @@ double expected_cost(const Level& level, std::span<const double> instance_costs)
     double sum = 1;
     for (const double part : parts) sum += part;
     return sum;
+}
+
+}  // namespace
+
+double expected_cost(const Level& level, std::span<const double> instance_costs) {
+    if (!level.compact.nodes.empty()) return cost_of(level, level.compact.nodes, level.compact.blocks, instance_costs);
+    if (level.nodes.empty()) return 0;
+    return cost_of(level, level.nodes, level.blocks, instance_costs);
 }
 
 }  // namespace steradian

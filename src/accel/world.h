@@ -17,8 +17,8 @@ struct LeafEntry {
 
 /// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
 struct LevelView {
-    const WideNode* nodes = nullptr;
-    const TriangleBlock* blocks = &kNoBlocks;  ///< that where there are no triangles
+    const void* nodes = nullptr;      ///< what they are depends on the layout: kernels/layout_*.inl
+    const void* blocks = &kNoBlocks;  ///< the same; that where there are no triangles
     const LeafEntry* entries = nullptr;
 };
 

@@ -22,6 +22,7 @@ inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "lig
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
 inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
+inline constexpr std::array<std::string_view, 2> kLayoutNames{"full", "compact"};
 inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "sse4", "avx2", "avx512", "neon"};
 }  // namespace detail
 
@@ -44,6 +45,10 @@ constexpr std::span<const std::string_view> names_of<FilterKind>() noexcept {
 template <>
 constexpr std::span<const std::string_view> names_of<BvhBuilder>() noexcept {
     return detail::kBuilderNames;
+}
+template <>
+constexpr std::span<const std::string_view> names_of<BvhLayout>() noexcept {
+    return detail::kLayoutNames;
 }
 template <>
 constexpr std::span<const std::string_view> names_of<Isa>() noexcept {

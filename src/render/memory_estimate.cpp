@@ -17,6 +17,7 @@ namespace {
 /// Of the hierarchy, measured on meshes of one to three million triangles (a fifth of the bytes are the nodes, the
 /// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
 constexpr uint64_t kTriangleBytes = 55, kTriangleBytesMedian = 66, kTriangleBytesHighQuality = 57;
+constexpr uint64_t kTriangleBytesCompact = 30, kTriangleBuildBytesCompact = 72;
 constexpr uint64_t kTriangleBuildBytes = 75, kTriangleBuildBytesHighQuality = 185;
 constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
 constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
@@ -72,10 +73,14 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
     MemoryEstimate out;
     out.scene = scene_bytes(scene);
     const bool high_quality = execution.bvh == BvhBuilder::high_quality;
-    const uint64_t triangle = high_quality                          ? kTriangleBytesHighQuality
+    const bool compact = execution.bvh_layout == BvhLayout::compact;
+    const uint64_t triangle = compact                               ? kTriangleBytesCompact
+                              : high_quality                        ? kTriangleBytesHighQuality
                               : execution.bvh == BvhBuilder::median ? kTriangleBytesMedian
                                                                     : kTriangleBytes;
-    const uint64_t triangle_build = high_quality ? kTriangleBuildBytesHighQuality : kTriangleBuildBytes;
+    const uint64_t triangle_build = high_quality ? kTriangleBuildBytesHighQuality
+                                    : compact    ? kTriangleBuildBytesCompact
+                                                 : kTriangleBuildBytes;
     out.hierarchy = triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
                     instances * sizeof(ShadingScene::InstanceData) +
                     scene.lights.size() * sizeof(ShadingScene::LightData);

@@ -80,6 +80,7 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     AccelOptions options;
     options.builder = execution.bvh;
     options.max_depth = execution.bvh_max_depth;
+    options.layout = execution.bvh_layout;
     options.isa = execution.isa;
     Result<Accel> accel = Error{};
     with_threads(execution.threads, [&] { accel = Accel::build(geometries, instances, options); });

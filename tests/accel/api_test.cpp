@@ -118,20 +118,22 @@ TEST(Api, HostileRaysAmongManyGetTheDefinedAnswer) {
         std::vector<Hit> expected, hits(rays.size());
         std::vector<uint8_t> occluded(rays.size());
         for (const Ray& ray : rays) expected.push_back(brute.first_hit(ray));
-        for (const Isa isa : supported_isas()) {
-            AccelOptions options;
-            options.isa = isa;
-            const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-            ASSERT_TRUE(accel);
-            for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
-                accel->intersect(rays, hits, kind);
-                accel->occluded(rays, occluded, kind);
-                for (size_t i = 0; i < rays.size(); ++i) {
-                    ASSERT_TRUE(same_bits(hits[i], expected[i])) << scene.name << " " << describe(rays[i]);
-                    ASSERT_EQ(occluded[i] != 0, expected[i].found());
+        for (const Isa isa : supported_isas())
+            for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+                AccelOptions options;
+                options.isa = isa;
+                options.layout = layout;
+                const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_TRUE(accel);
+                for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
+                    accel->intersect(rays, hits, kind);
+                    accel->occluded(rays, occluded, kind);
+                    for (size_t i = 0; i < rays.size(); ++i) {
+                        ASSERT_TRUE(same_bits(hits[i], expected[i])) << scene.name << " " << describe(rays[i]);
+                        ASSERT_EQ(occluded[i] != 0, expected[i].found());
+                    }
                 }
             }
-        }
     }
 }
 

@@ -1,4 +1,4 @@
-// Primitives that are not opaque: what occluded() says of them, on every kernel and builder.
+// Primitives that are not opaque: what occluded() says of them, on every kernel, builder and layout.
 #include <gtest/gtest.h>
 
 #include "accel/geometry.h"
@@ -10,19 +10,14 @@
 namespace steradian::test {
 namespace {
 
-/// Every builder with every kernel.
 std::vector<Accel> build_all(const TestScene& scene) {
     std::vector<Accel> built;
     const std::vector<Geometry> geometries = scene.geometries();
-    for (uint8_t builder = 0; builder < names_of<BvhBuilder>().size(); ++builder)
-        for (const Isa isa : supported_isas()) {
-            AccelOptions options;
-            options.builder = static_cast<BvhBuilder>(builder);
-            options.isa = isa;
-            Result<Accel> accel = Accel::build(geometries, scene.instances, options);
-            if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
-            built.push_back(std::move(*accel));
-        }
+    for (const AccelOptions& options : all_options()) {
+        Result<Accel> accel = Accel::build(geometries, scene.instances, options);
+        if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
+        built.push_back(std::move(*accel));
+    }
     return built;
 }
 

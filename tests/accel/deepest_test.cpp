@@ -1,6 +1,7 @@
 // Hierarchies as deep as the kernels are made for, on both levels at once, by hand: what the stacks must hold.
 #include <gtest/gtest.h>
 
+#include "accel/compact.h"
 #include "accel/kernels/kernels.h"
 #include "scenes.h"
 
@@ -39,6 +40,19 @@ struct Chain {
         bounds = inside;
     }
     LevelView view() const { return {nodes.data(), blocks.data(), nullptr}; }
+    CompactLevel compact() const {
+        Bvh bvh;
+        bvh.nodes.resize(nodes.size());
+        std::copy(nodes.begin(), nodes.end(), bvh.nodes.begin());
+        for (const TriangleBlock& block : blocks)
+            bvh.blocks.insert(bvh.blocks.end(), std::begin(block.prim), std::end(block.prim));
+        Cancellation never;
+        const auto triangle = [&](uint32_t id) -> PackedTriangle {
+            const uint32_t* corner = &mesh.indices[3 * size_t(id)];
+            return {id, {mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]}};
+        };
+        return make_compact(bvh, triangle, never, 0);
+    }
 
     Box bounds;
 
@@ -77,15 +91,22 @@ TEST(Deepest, StacksHoldBothLevels) {
     PlacedGeometry in_place;
     in_place.world = outer.bounds;
     const PlacedGeometry instances[] = {in_place, *placed};
-    const LevelView levels[] = {{}, inner.view()};
     const ShapesView shapes[2] = {};
     const TrianglePart part{0, 0};
     const LeafEntry entry{1, 0, {}};
-    World world;
-    world.upper = outer.view();
-    world.upper.entries = &entry;
-    world.parts = &part, world.part_count = 1;
-    world.instances = instances, world.levels = levels, world.shapes = shapes;
+    const auto world_of = [&](const LevelView& upper, const LevelView* levels) {
+        World world;
+        world.upper = upper;
+        world.upper.entries = &entry;
+        world.parts = &part, world.part_count = 1;
+        world.instances = instances, world.levels = levels, world.shapes = shapes;
+        return world;
+    };
+    const CompactLevel compact_inner = inner.compact(), compact_outer = outer.compact();
+    const LevelView levels[] = {{}, inner.view()};
+    const LevelView compact_levels[] = {{}, {compact_inner.nodes.data(), compact_inner.blocks.data(), nullptr}};
+    const World full = world_of(outer.view(), levels);
+    const World compact = world_of({compact_outer.nodes.data(), compact_outer.blocks.data(), nullptr}, compact_levels);
 
     TestScene scene("two chains");
     scene.meshes = {outer.mesh, inner.mesh};
@@ -108,32 +129,34 @@ TEST(Deepest, StacksHoldBothLevels) {
     ASSERT_EQ(found, rays.size() / 2);
     ASSERT_EQ(brute.all_hits(rays[0]).size(), 2 * (size_t(kSiblings) * kMaxNodeLevels) + 1);
 
-    for (const Isa isa : supported_isas()) {
-        const Kernels& kernels = **select_kernels(isa);
-        std::vector<Hit> hits(rays.size());
-        std::vector<uint8_t> occluded(rays.size());
-        for (const auto intersect : {kernels.intersect, kernels.intersect_coherent}) {
-            intersect(world, rays.data(), hits.data(), rays.size());
-            for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], expected[i])) << i;
+    for (const Isa isa : supported_isas())
+        for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+            const Kernels& kernels = **select_kernels(isa, layout);
+            const World& world = layout == BvhLayout::full ? full : compact;
+            std::vector<Hit> hits(rays.size());
+            std::vector<uint8_t> occluded(rays.size());
+            for (const auto intersect : {kernels.intersect, kernels.intersect_coherent}) {
+                intersect(world, rays.data(), hits.data(), rays.size());
+                for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(hits[i], expected[i])) << i;
+            }
+            for (const auto any : {kernels.occluded, kernels.occluded_coherent}) {
+                any(world, rays.data(), occluded.data(), rays.size());
+                for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i] != 0, expected[i].found()) << i;
+            }
+            for (size_t i = 0; i < rays.size(); ++i) {
+                Hit hit;
+                kernels.intersect(world, &rays[i], &hit, 1);
+                ASSERT_TRUE(same_bits(hit, expected[i])) << i;
+            }
+            // All hits in turn.
+            const std::vector<Hit> all = brute.all_hits(rays[0]);
+            Hit hit = all[0];
+            for (size_t k = 1; k <= all.size(); ++k) {
+                const Hit after = hit;
+                kernels.next_hit(world, rays.data(), &after, &hit, 1);
+                ASSERT_TRUE(same_bits(hit, k < all.size() ? all[k] : Hit{})) << k;
+            }
         }
-        for (const auto any : {kernels.occluded, kernels.occluded_coherent}) {
-            any(world, rays.data(), occluded.data(), rays.size());
-            for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i] != 0, expected[i].found()) << i;
-        }
-        for (size_t i = 0; i < rays.size(); ++i) {
-            Hit hit;
-            kernels.intersect(world, &rays[i], &hit, 1);
-            ASSERT_TRUE(same_bits(hit, expected[i])) << i;
-        }
-        // All hits in turn.
-        const std::vector<Hit> all = brute.all_hits(rays[0]);
-        Hit hit = all[0];
-        for (size_t k = 1; k <= all.size(); ++k) {
-            const Hit after = hit;
-            kernels.next_hit(world, rays.data(), &after, &hit, 1);
-            ASSERT_TRUE(same_bits(hit, k < all.size() ? all[k] : Hit{})) << k;
-        }
-    }
 }
 
 }  // namespace

@@ -163,33 +163,28 @@ std::string check_hostile_case(const HostileCase& hostile, HostileCounts& counts
     std::optional<std::string> refusal;  // the first one's, which must be everybody's
     std::optional<Answers> expected;
     ++counts.cases;
-    for (uint8_t builder = 0; builder < names_of<BvhBuilder>().size(); ++builder)
-        for (const Isa isa : supported_isas()) {
-            AccelOptions options;
-            options.builder = static_cast<BvhBuilder>(builder);
-            options.isa = isa;
-            options.max_depth = hostile.max_depth;
-            const std::string name = std::string(name_of(options.builder)) + ", " + std::string(name_of(isa)) +
-                                     ", max depth " + std::to_string(options.max_depth);
-            const Result<Accel> accel = Accel::build(geometries, hostile.scene.instances, options);
-            const std::string message = accel ? "" : accel.error().message;
-            if (!refusal) {
-                refusal = message;
-                counts.refused += !accel;
-            }
-            if (message != *refusal) return name + ": '" + message + "', but before '" + *refusal + "'";
-            if (!accel) {
-                if (accel.error().code != ErrorCode::bad_input) return name + ": " + message;
-                continue;
-            }
-            if (accel->statistics().depth > options.max_depth) return name + ": too deep";
-            if (!expected) {
-                expected = answers(hostile);
-                count(*expected, counts);
-            }
-            const std::string failure = Interview(hostile, *expected, *accel).run();
-            if (!failure.empty()) return name + ": " + failure;
+    for (AccelOptions options : all_options()) {
+        options.max_depth = hostile.max_depth;
+        const std::string name = describe(options);
+        const Result<Accel> accel = Accel::build(geometries, hostile.scene.instances, options);
+        const std::string message = accel ? "" : accel.error().message;
+        if (!refusal) {
+            refusal = message;
+            counts.refused += !accel;
         }
+        if (message != *refusal) return name + ": '" + message + "', but before '" + *refusal + "'";
+        if (!accel) {
+            if (accel.error().code != ErrorCode::bad_input) return name + ": " + message;
+            continue;
+        }
+        if (accel->statistics().depth > options.max_depth) return name + ": too deep";
+        if (!expected) {
+            expected = answers(hostile);
+            count(*expected, counts);
+        }
+        const std::string failure = Interview(hostile, *expected, *accel).run();
+        if (!failure.empty()) return name + ": " + failure;
+    }
     return {};
 }
 

@@ -16,15 +16,17 @@ struct Variant {
     BvhBuilder builder;
     uint32_t max_depth;
     Isa isa;
+    BvhLayout layout = BvhLayout::full;
 };
 
-/// Every kernel that the machine has on the default hierarchy and on the one with split boxes, and other hierarchies
-/// with the kernels in turn.
+/// Every kernel that the machine has on the default hierarchy, in both layouts, and on the one with split boxes, and
+/// other hierarchies with the kernels in turn.
 std::vector<Variant> variants() {
     std::vector<Variant> all;
     const std::vector<Isa> isas = supported_isas();
     for (const Isa isa : isas)
         for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality}) all.push_back({builder, 64, isa});
+    for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa, BvhLayout::compact});
     size_t turn = 0;
     for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::fast, 64u},
                                              {BvhBuilder::median, 64u},
@@ -36,12 +38,17 @@ std::vector<Variant> variants() {
                                              {BvhBuilder::fast, 17u},
                                              {BvhBuilder::fast, 2u}})
         all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
+    for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::high_quality, 64u},
+                                             {BvhBuilder::fast, 64u},
+                                             {BvhBuilder::median, 3u},
+                                             {BvhBuilder::high_quality, 1u}})
+        all.push_back({builder, max_depth, isas[turn++ % isas.size()], BvhLayout::compact});
     return all;
 }
 
 std::string name_of(const Variant& v) {
     return std::string(steradian::name_of(v.builder)) + ", max depth " + std::to_string(v.max_depth) +
-           ", instruction set " + std::to_string(int(v.isa));
+           ", instruction set " + std::to_string(int(v.isa)) + ", " + std::string(steradian::name_of(v.layout));
 }
 
 std::vector<Accel> build_all(const TestScene& scene) {
@@ -52,6 +59,7 @@ std::vector<Accel> build_all(const TestScene& scene) {
         options.builder = v.builder;
         options.max_depth = v.max_depth;
         options.isa = v.isa;
+        options.layout = v.layout;
         Result<Accel> accel = Accel::build(geometries, scene.instances, options);
         if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
         EXPECT_LE(accel->statistics().depth, v.max_depth) << scene.name << ": " << name_of(v);
@@ -326,23 +334,27 @@ TEST(Oracle, AnyNumberOfRays) {
     TestScene scene("sphere");
     scene.meshes.push_back(icosphere(3));
     scene.finish(1);
-    const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
-    ASSERT_TRUE(accel);
     const std::vector<Ray> rays = hard_rays(scene, 100, 5);
-    for (size_t count = 0; count <= rays.size(); ++count)
-        for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
-            const Hit untouched{1, 2, 3, 4, 5};
-            std::vector<Hit> hits(rays.size() + 1, untouched);
-            std::vector<uint8_t> occluded(rays.size() + 1, 7);
-            accel->intersect(std::span(rays).first(count), std::span(hits).first(count), kind);
-            accel->occluded(std::span(rays).first(count), std::span(occluded).first(count), kind);
-            for (size_t i = 0; i < count; ++i) {
-                ASSERT_TRUE(same_bits(hits[i], accel->intersect(rays[i]))) << count << " rays, ray " << i;
-                ASSERT_EQ(occluded[i], accel->occluded(rays[i]));
+    for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+        AccelOptions options;
+        options.layout = layout;
+        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+        ASSERT_TRUE(accel);
+        for (size_t count = 0; count <= rays.size(); ++count)
+            for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
+                const Hit untouched{1, 2, 3, 4, 5};
+                std::vector<Hit> hits(rays.size() + 1, untouched);
+                std::vector<uint8_t> occluded(rays.size() + 1, 7);
+                accel->intersect(std::span(rays).first(count), std::span(hits).first(count), kind);
+                accel->occluded(std::span(rays).first(count), std::span(occluded).first(count), kind);
+                for (size_t i = 0; i < count; ++i) {
+                    ASSERT_TRUE(same_bits(hits[i], accel->intersect(rays[i]))) << count << " rays, ray " << i;
+                    ASSERT_EQ(occluded[i], accel->occluded(rays[i]));
+                }
+                ASSERT_TRUE(same_bits(hits[count], untouched));
+                ASSERT_EQ(occluded[count], 7);
             }
-            ASSERT_TRUE(same_bits(hits[count], untouched));
-            ASSERT_EQ(occluded[count], 7);
-        }
+    }
 }
 
 TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {

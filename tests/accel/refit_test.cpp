@@ -225,5 +225,27 @@ TEST(Refit, RefusesWhatIsNotTheSameAndChangesNothing) {
     EXPECT_TRUE(accel->refit(moved.geometries(), instances));
 }
 
+TEST(Refit, IsNotForTheCompactLayout) {
+    TestScene scene("cube");
+    scene.meshes.push_back(cube());
+    scene.finish(1);
+    AccelOptions options;
+    options.layout = BvhLayout::compact;
+    Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+    ASSERT_TRUE(accel);
+    const std::vector<Ray> rays = hard_rays(scene, 500, 2);
+    std::vector<Hit> expected(rays.size());
+    accel->intersect(rays, expected);
+    const Status status = accel->refit(scene.geometries(), scene.instances);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().code, ErrorCode::usage);
+    EXPECT_EQ(status.error().message, "a hierarchy in the compact layout cannot be refitted; build it anew");
+    expect_answers(*accel, rays, expected, "after the refusal");
+    // With nothing in it as well.
+    Result<Accel> empty = Accel::build({}, {}, options);
+    ASSERT_TRUE(empty);
+    EXPECT_FALSE(empty->refit({}, {}));
+}
+
 }  // namespace
 }  // namespace steradian::test

@@ -73,13 +73,15 @@ TEST(Watertight, NoRayFromInsideGetsThrough) {
         const Geometry geometry = all[c].mesh.geometry();
         const GeometryInstance instance;
         std::vector<Accel> built;
-        for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality}) {
-            AccelOptions options;
-            options.builder = builder;
-            Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
-            ASSERT_TRUE(accel);
-            built.push_back(std::move(*accel));
-        }
+        for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality})
+            for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+                AccelOptions options;
+                options.builder = builder;
+                options.layout = layout;
+                Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
+                ASSERT_TRUE(accel);
+                built.push_back(std::move(*accel));
+            }
         Random random(500 + c);
         std::vector<Ray> rays(1000);
         std::vector<Hit> hits(rays.size());
@@ -107,7 +109,9 @@ TEST(Watertight, RotatedInstancesAreClosedToo) {
         const GeometryInstance instance{0, translation(away * x, away * y, away * z) *
                                                rotation_degrees(360 * y, {x, y, z}) *
                                                scaling(i % 3 ? 1 : -2, 1, 0.5 + random.unit())};
-        const Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1});
+        AccelOptions options;
+        options.layout = i % 4 < 2 ? BvhLayout::full : BvhLayout::compact;
+        const Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
         ASSERT_TRUE(accel);
         for (size_t k = 0; k < by_tier<size_t>(5'000, 200'000); ++k) {
             Ray ray = aimed_ray(closed, random);

@@ -4,8 +4,8 @@
 #     matrix.sh [--full] [--update] [--only NAME] COMMAND...
 #
 # COMMAND... runs the program: its path, or an emulator and its path. The ways: 1, 2 and 7 threads, three tile sizes, both
-# builders of the hierarchy (a covering part of the combinations, with --full all of them), and a crop against the same
-# part of the whole picture. --update writes the hashes of this run to golden.txt instead.
+# builders of the hierarchy and both of its layouts (a covering part of the combinations, with --full more of them), and a
+# crop against the same part of the whole picture. --update writes the hashes of this run to golden.txt instead.
 # The last line is "N passed, N failed". Needs a shell and the usual small tools only.
 set -euo pipefail
 
@@ -38,9 +38,10 @@ if [ "$full" = yes ]; then
     for threads in 1 2 7; do for tile in 5 16 64; do for bvh in sah median fast high-quality; do
         combinations+=("$threads $tile $bvh auto")
     done; done; done
-    for isa in $isas; do combinations+=("2 16 sah $isa"); done
+    for isa in $isas; do combinations+=("2 16 sah $isa" "2 16 sah $isa compact" "2 16 median $isa compact"); done
 else
-    combinations=('1 16 sah auto' '2 5 median auto' '7 5 sah scalar' '7 16 fast auto' '2 16 high-quality auto')
+    combinations=('1 16 sah auto' '2 5 median auto' '7 5 sah scalar' '7 16 fast auto' '2 16 high-quality auto'
+                  '2 16 sah auto compact')
     for isa in $isas; do combinations+=("1 64 median $isa"); done
 fi
 
@@ -72,20 +73,20 @@ crop_of() {
 
 # One case; prints what is wrong and returns 1, or leaves the hash in $hash.
 run_case() {
-    local name=$1 scene=$2 golden threads tile bvh isa seen most=0
+    local name=$1 scene=$2 golden threads tile bvh isa layout seen most=0
     shift 2
     golden=$(sed -n "s/^$name \([0-9a-f]\{32\}\)\$/\1/p" "$here/golden.txt")
     hash=
     for combination in "${combinations[@]}"; do
-        read -r threads tile bvh isa <<<"$combination"
+        read -r threads tile bvh isa layout <<<"$combination"
         render "$work/picture.pfm" "$scene" "$@" --threads "$threads" --tile-size "$tile" --bvh "$bvh" \
-            --isa "$isa" || return 1
+            --isa "$isa" --bvh-layout "${layout:-full}" || return 1
         seen=$(json_text hash)
         [[ $seen =~ ^[0-9a-f]{32}$ ]] || { echo "    no hash in the statistics" && return 1; }
         [ -n "$hash" ] || hash=$seen
         [ "$update" = yes ] || hash=$golden
         if [ "$seen" != "$hash" ]; then
-            echo "    $seen instead of ${hash:-a hash in golden.txt}: $threads threads, tile size $tile, $bvh, $isa"
+            echo "    $seen instead of ${hash:-a hash in golden.txt}: $threads threads, tile size $tile, $bvh, $isa, ${layout:-full}"
             return 1
         fi
         [ "$(json_number threads)" -le "$most" ] || most=$(json_number threads)

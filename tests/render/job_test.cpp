@@ -59,6 +59,11 @@ TEST(Job, TheSameBitsOnAnyNumberOfThreadsTilesAndBuilders) {
                       expected)
                 << depth;
         }
+    for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality}) {
+        const Execution execution{2, 16, builder, 64, Isa::automatic, BvhLayout::compact};
+        EXPECT_EQ(image_hash(run(prepared(test::everything_scene(), execution), small_settings(), execution).image),
+                  expected);
+    }
 }
 
 TEST(Job, SevenThreadsTakePart) {

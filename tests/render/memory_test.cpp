@@ -24,9 +24,10 @@ Scene grid(uint32_t n) {
     return s;
 }
 
-void expect_hierarchy(const Scene& scene, BvhBuilder builder) {
+void expect_hierarchy(const Scene& scene, BvhBuilder builder, BvhLayout layout) {
     Execution execution;
     execution.bvh = builder;
+    execution.bvh_layout = layout;
     const MemoryEstimate estimate = estimate_memory(scene, {}, execution);
     Diagnostics diagnostics;
     const auto prepared = prepare(scene, execution, diagnostics);
@@ -40,10 +41,10 @@ void expect_hierarchy(const Scene& scene, BvhBuilder builder) {
 }
 
 TEST(MemoryEstimate, TheHierarchyOfAMesh) {
-    expect_hierarchy(grid(200), BvhBuilder::sah);
-    expect_hierarchy(grid(200), BvhBuilder::median);
-    expect_hierarchy(grid(200), BvhBuilder::fast);
-    expect_hierarchy(grid(200), BvhBuilder::high_quality);
+    for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact})
+        for (const BvhBuilder builder :
+             {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality})
+            expect_hierarchy(grid(200), builder, layout);
 }
 
 TEST(MemoryEstimate, TheSceneIsWhatItsArraysHold) {

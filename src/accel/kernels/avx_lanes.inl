@@ -25,3 +25,18 @@ inline void transpose(const float* const* rows, float* columns) {
         }
     }
 }
+
+/// Lanes in the order that a node has stored for an octant.
+inline __m256i lanes_in_order(const WideNode& node, uint32_t octant_shift) {
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
+    return _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+}
+/// Bits of the places, and of the children, where there is a child; of others in full nodes no box is ever met.
+inline uint32_t present_in_order(const WideNode&) { return ~0u; }
+inline uint32_t present(const WideNode&) { return ~0u; }
+inline __m256i lanes_in_order(const CompactNode& node, uint32_t octant_shift) {
+    return _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(node.order_of(octant_shift))),
+                             _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
+}
+inline uint32_t present_in_order(const CompactNode& node) { return node.present_in_order(); }
+inline uint32_t present(const CompactNode& node) { return node.present(); }

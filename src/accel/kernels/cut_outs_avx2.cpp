@@ -15,9 +15,24 @@ namespace avx2 {
 namespace {
 #include "accel/kernels/simd_avx2.inl"
 
+#include "accel/kernels/compact_avx2.inl"
+}  // namespace
+namespace full {
+namespace {
+#include "accel/kernels/layout_full.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
+}  // namespace full
+namespace compact {
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+}  // namespace
+#include "accel/kernels/cut_outs.inl"
+}  // namespace compact
 }  // namespace avx2
 }  // namespace steradian
 

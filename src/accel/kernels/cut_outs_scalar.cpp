@@ -5,8 +5,23 @@ namespace scalar {
 namespace {
 #include "accel/kernels/simd_scalar.inl"
 
+#include "accel/kernels/compact_lanes.inl"
+}  // namespace
+namespace full {
+namespace {
+#include "accel/kernels/layout_full.inl"
+
 #include "accel/kernels/kernel.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
+}  // namespace full
+namespace compact {
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+}  // namespace
+#include "accel/kernels/cut_outs.inl"
+}  // namespace compact
 }  // namespace scalar
 }  // namespace steradian

@@ -1,5 +1,6 @@
-// The kernels: many rays at once through the two levels of hierarchies. Included once for each instruction set, inside
-// a namespace of its own and after its vectors (simd_*.inl).
+// The kernels: many rays at once through the two levels of hierarchies. Included once for each instruction set and
+// layout, inside a namespace of its own and after its vectors (simd_*.inl) and how it reads nodes and blocks
+// (layout_*.inl).
 //
 // What bounds traversal is waiting: for nodes to come from memory, and for the outcome of one test before the next one
 // can start. So several rays are on their way at a time, each a small state machine (Flight); whenever one of them
@@ -65,8 +66,8 @@ inline void set_level(Flight& f, const LevelView& level, const Ray& ray) {
     f.octant_shift = 0;
     for (int axis = 0; axis < 3; ++axis) {
         f.o[axis] = slab.o[axis], f.inv_d[axis] = slab.inv_d[axis];
-        f.near_plane[axis] = static_cast<uint32_t>(2 * axis + slab.negative[axis]) * sizeof(float[kWidth]);
-        f.far_plane[axis] = f.near_plane[axis] ^ sizeof(float[kWidth]);
+        f.near_plane[axis] = static_cast<uint32_t>(2 * axis + slab.negative[axis]) * kPlaneBytes;
+        f.far_plane[axis] = f.near_plane[axis] ^ kPlaneBytes;
         f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
     }
     if (level.blocks != &kNoBlocks) f.triangle_ray = TriangleRay(ray);
@@ -110,14 +111,13 @@ inline uint32_t pop(Flight& f) {
 }
 
 /// slab_interval() for the children of a node, from the start of the range on.
-inline void test_children(const Flight& f, const WideNode& node, Float8& in, Float8& out) {
-    const char* planes = reinterpret_cast<const char*>(&node);
-    const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
+inline void test_children(const Flight& f, const Node& node, Float8& in, Float8& out) {
     in = Float8::all(f.start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
+        const Planes planes(node, axis);
         const Float8 o = Float8::all(f.o[axis]), inv_d = Float8::all(f.inv_d[axis]);
-        in = larger((plane(f.near_plane[axis]) - o) * inv_d, in);
-        out = smaller((plane(f.far_plane[axis]) - o) * inv_d, out);
+        in = larger((planes.at(f.near_plane[axis]) - o) * inv_d, in);
+        out = smaller((planes.at(f.far_plane[axis]) - o) * inv_d, out);
     }
     out = out * Float8::all(kFarScale) + Float8::all(kFarPad);
 }
@@ -126,7 +126,7 @@ inline void test_children(const Flight& f, const WideNode& node, Float8& in, Flo
 /// the order that the node has stored.
 template <Mode kMode>
 inline void visit_node(Flight& f) {
-    const WideNode& node = f.level.nodes[f.next];
+    const Node& node = node_at(f.level, f.next);
     Float8 in, out;
     test_children(f, node, in, out);
     if (is_any(kMode)) {
@@ -142,10 +142,10 @@ inline void visit_node(Flight& f) {
 /// distance, and the nearest child does not go through the stack.
 template <Mode kMode>
 inline void visit_node_alone(Flight& f) {
-    const WideNode& node = f.level.nodes[f.next];
+    const Node& node = node_at(f.level, f.next);
     Float8 in, out;
     test_children(f, node, in, out);
-    uint32_t met = at_most(in, out) & at_most(in, Float8::all(f.limit));
+    uint32_t met = at_most(in, out) & at_most(in, Float8::all(f.limit)) & existing(node);
     if (met == 0) {
         f.next = pop<kMode>(f);
         return;
@@ -176,22 +176,23 @@ inline void identify(const Flight& f, const World& world, uint32_t id, Hit& hit)
 
 /// One triangle of a block, the long way.
 template <Mode kMode>
-[[gnu::noinline]] bool test_triangle(Flight& f, const World& world, const TriangleBlock& block, uint32_t lane) {
+[[gnu::noinline]] bool test_triangle(Flight& f, const World& world, const Block& block, uint32_t lane) {
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     TriangleCandidate c;
-    if (block.prim[lane] == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
+    const uint32_t id = block.prim(lane);
+    if (id == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
     Hit hit{c.t, c.u, c.v};
-    identify(f, world, block.prim[lane], hit);
+    identify(f, world, id, hit);
     return offer<kMode>(f, world, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
 }
 
 /// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
-inline uint32_t settle_block(const Flight& f, const TriangleBlock& block, Float4 t, uint32_t lanes, float settled[4]) {
+inline uint32_t settle_block(const Flight& f, const Block& block, Float4 t, uint32_t lanes, float settled[4]) {
     Float4 in = Float4::all(-kInfinity), out = Float4::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
-        const Float4 a = Float4::load(block.vertex[0][axis]), b = Float4::load(block.vertex[1][axis]),
-                     c = Float4::load(block.vertex[2][axis]);
-        const Float4 lo = smaller(smaller(a, b), c), hi = larger(larger(a, b), c);
+        Float4 p[3];
+        block.corners(axis, p);
+        const Float4 lo = smaller(smaller(p[0], p[1]), p[2]), hi = larger(larger(p[0], p[1]), p[2]);
         const Float4 o = Float4::all(f.o[axis]), inv_d = Float4::all(f.inv_d[axis]);
         const bool negative = f.near_plane[axis] > f.far_plane[axis];
         in = larger(((negative ? hi : lo) - o) * inv_d, in);
@@ -210,15 +211,16 @@ inline uint32_t settle_block(const Flight& f, const TriangleBlock& block, Float4
 
 /// intersect_triangle() for four triangles, operation by operation.
 template <Mode kMode>
-[[gnu::always_inline]] inline bool test_block(Flight& f, const World& world, const TriangleBlock& block) {
+[[gnu::always_inline]] inline bool test_block(Flight& f, const World& world, const Block& block) {
     const TriangleRay& ray = f.triangle_ray;
     const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
     const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
     Double4 x[3], y[3], z[3];
+    block.corners(ray.axis[0], x), block.corners(ray.axis[1], y), block.corners(ray.axis[2], z);
     for (int i = 0; i < 3; ++i) {
-        z[i] = Double4::of_floats(block.vertex[i][ray.axis[2]]) - o[2];
-        x[i] = (Double4::of_floats(block.vertex[i][ray.axis[0]]) - o[0]) - shear_x * z[i];
-        y[i] = (Double4::of_floats(block.vertex[i][ray.axis[1]]) - o[1]) - shear_y * z[i];
+        z[i] = z[i] - o[2];
+        x[i] = (x[i] - o[0]) - shear_x * z[i];
+        y[i] = (y[i] - o[1]) - shear_y * z[i];
     }
     const Double4 u = x[2] * y[1] - y[2] * x[1];
     const Double4 v = x[0] * y[2] - y[0] * x[2];
@@ -243,9 +245,10 @@ template <Mode kMode>
     u.store(us), v.store(vs), w.store(ws);
     for (; lanes; lanes &= lanes - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
-        if (block.prim[lane] == kNoHit) continue;
+        const uint32_t id = block.prim(lane);
+        if (id == kNoHit) continue;
         Hit hit{settled[lane]};
-        identify(f, world, block.prim[lane], hit);
+        identify(f, world, id, hit);
         if (!accept<kMode>(f, world, hit)) continue;
         if (is_any(kMode)) return true;
         const EdgeFunctions edges{us[lane], vs[lane], ws[lane], {}};
@@ -274,9 +277,8 @@ template <Mode kMode>
 /// A run of blocks. True when the query is done.
 template <Mode kMode>
 [[gnu::always_inline]] inline bool visit_blocks(Flight& f, const World& world, uint32_t ref) {
-    const TriangleBlock* block = f.level.blocks + ChildRef::first(ref);
-    for (const TriangleBlock* end = block + ChildRef::count(ref); block < end; ++block)
-        if (test_block<kMode>(f, world, *block)) return true;
+    for (Blocks blocks(f.level, ref); blocks.more(); blocks.next())
+        if (test_block<kMode>(f, world, blocks.block())) return true;
     return false;
 }
 
@@ -398,14 +400,11 @@ inline uint8_t occlusion(const Hit& hit) {
 [[gnu::always_inline]] inline void prefetch(const Flight& f) {
     const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
     const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), blocks = all_if(f.next < ChildRef::kFirstOther);
-    const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(WideNode);
-    const uintptr_t block =
-        reinterpret_cast<uintptr_t>(f.level.blocks) + (ChildRef::first(f.next) & blocks) * sizeof(TriangleBlock);
+    const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(Node);
+    const uintptr_t block = reinterpret_cast<uintptr_t>(f.level.blocks) + (first_block(f.next) & blocks) * kBlockBytes;
     const uintptr_t place = (block & leaf) | (node & ~leaf);
-    __builtin_prefetch(reinterpret_cast<const char*>(place));
-    __builtin_prefetch(reinterpret_cast<const char*>(place + 64));
-    __builtin_prefetch(reinterpret_cast<const char*>(place + 128));
-    __builtin_prefetch(reinterpret_cast<const char*>(place + 192));
+    for (size_t line = 0; line < kPrefetchBytes; line += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(place + line));
 }
 
 /// Rays on their way, in two queues, because whether a ray is at a node or at a leaf next is the one thing that a

@@ -9,10 +9,13 @@
 #include <utility>
 
 #include "accel/bvh.h"
+#include "accel/compact_block.h"
+#include "accel/compact_node.h"
 #include "accel/kernels/kernels.h"
 #include "accel/planar.h"
 #include "accel/sphere.h"
 #include "accel/triangle.h"
+#include "accel/triangle_block.h"
 #include "accel/world.h"
 
 #if defined(__x86_64__)

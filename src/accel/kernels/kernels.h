@@ -1,4 +1,4 @@
-// One table of functions for each instruction set. All of them compute the same bits.
+// One table of functions for each instruction set and layout. All of them compute the same bits.
 #pragma once
 
 #include <cstddef>
@@ -23,17 +23,18 @@ struct Kernels {
     void (*occluded_or_cut_out)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 };
 
-extern const Kernels kScalarKernels;
+extern const Kernels kScalarKernels, kScalarCompactKernels;
 #if defined(__x86_64__)
 extern const Kernels kSse4Kernels, kAvx2Kernels, kAvx512Kernels;
+extern const Kernels kSse4CompactKernels, kAvx2CompactKernels, kAvx512CompactKernels;
 #elif defined(__aarch64__)
-extern const Kernels kNeonKernels;
+extern const Kernels kNeonKernels, kNeonCompactKernels;
 #endif
 
 /// Those that this machine has, best first; the last one is Isa::scalar.
 std::vector<Isa> supported_isas();
 /// `usage` when the machine lacks the instruction set. For Isa::automatic what the environment variable STERADIAN_ISA
 /// names (`usage` when it names none), without one the best.
-Result<const Kernels*> select_kernels(Isa isa);
+Result<const Kernels*> select_kernels(Isa isa, BvhLayout layout = BvhLayout::full);
 
 }  // namespace steradian

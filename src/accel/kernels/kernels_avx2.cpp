@@ -12,10 +12,16 @@
 
 namespace steradian {
 namespace avx2 {
+namespace {
+#include "accel/kernels/simd_avx2.inl"
+
+#include "accel/kernels/compact_avx2.inl"
+}  // namespace
+namespace full {
 // In cut_outs_avx2.cpp.
 void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
-#include "accel/kernels/simd_avx2.inl"
+#include "accel/kernels/layout_full.inl"
 
 #include "accel/kernels/kernel.inl"
 
@@ -23,6 +29,18 @@ namespace {
 
 #include "accel/kernels/packet.inl"
 }  // namespace
+}  // namespace full
+namespace compact {
+// In cut_outs_avx2.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+}  // namespace
+}  // namespace compact
 }  // namespace avx2
 }  // namespace steradian
 
@@ -33,8 +51,13 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx2Kernels = {avx2::intersect,          avx2::occluded,          avx2::next_hit,
-                              avx2::intersect_coherent, avx2::occluded_coherent, avx2::occluded_or_cut_out};
-}
+const Kernels kAvx2Kernels = {avx2::full::intersect,         avx2::full::occluded,
+                              avx2::full::next_hit,          avx2::full::intersect_coherent,
+                              avx2::full::occluded_coherent, avx2::full::occluded_or_cut_out};
+// Without packets: rays that go the same way are traced as any others.
+const Kernels kAvx2CompactKernels = {avx2::compact::intersect, avx2::compact::occluded,
+                                     avx2::compact::next_hit,  avx2::compact::intersect,
+                                     avx2::compact::occluded,  avx2::compact::occluded_or_cut_out};
+}  // namespace steradian
 
 #endif

@@ -15,10 +15,16 @@
 
 namespace steradian {
 namespace avx512 {
+namespace {
+#include "accel/kernels/simd_avx512.inl"
+
+#include "accel/kernels/compact_avx2.inl"
+}  // namespace
+namespace full {
 // In cut_outs_avx512.cpp.
 void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
-#include "accel/kernels/simd_avx512.inl"
+#include "accel/kernels/layout_full.inl"
 
 #include "accel/kernels/kernel.inl"
 
@@ -26,6 +32,18 @@ namespace {
 
 #include "accel/kernels/packet.inl"
 }  // namespace
+}  // namespace full
+namespace compact {
+// In cut_outs_avx512.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+}  // namespace
+}  // namespace compact
 }  // namespace avx512
 }  // namespace steradian
 
@@ -36,8 +54,13 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kAvx512Kernels = {avx512::intersect,          avx512::occluded,          avx512::next_hit,
-                                avx512::intersect_coherent, avx512::occluded_coherent, avx512::occluded_or_cut_out};
-}
+const Kernels kAvx512Kernels = {avx512::full::intersect,         avx512::full::occluded,
+                                avx512::full::next_hit,          avx512::full::intersect_coherent,
+                                avx512::full::occluded_coherent, avx512::full::occluded_or_cut_out};
+// Without packets: rays that go the same way are traced as any others.
+const Kernels kAvx512CompactKernels = {avx512::compact::intersect, avx512::compact::occluded,
+                                       avx512::compact::next_hit,  avx512::compact::intersect,
+                                       avx512::compact::occluded,  avx512::compact::occluded_or_cut_out};
+}  // namespace steradian
 
 #endif

@@ -4,10 +4,16 @@
 
 namespace steradian {
 namespace neon {
+namespace {
+#include "accel/kernels/simd_neon.inl"
+
+#include "accel/kernels/compact_lanes.inl"
+}  // namespace
+namespace full {
 // In cut_outs_neon.cpp.
 void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
-#include "accel/kernels/simd_neon.inl"
+#include "accel/kernels/layout_full.inl"
 
 #include "accel/kernels/kernel.inl"
 
@@ -15,12 +21,29 @@ namespace {
 
 #include "accel/kernels/packet.inl"
 }  // namespace
+}  // namespace full
+namespace compact {
+// In cut_outs_neon.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+}  // namespace
+}  // namespace compact
 }  // namespace neon
 }  // namespace steradian
 
 namespace steradian {
-const Kernels kNeonKernels = {neon::intersect,          neon::occluded,          neon::next_hit,
-                              neon::intersect_coherent, neon::occluded_coherent, neon::occluded_or_cut_out};
-}
+const Kernels kNeonKernels = {neon::full::intersect,         neon::full::occluded,
+                              neon::full::next_hit,          neon::full::intersect_coherent,
+                              neon::full::occluded_coherent, neon::full::occluded_or_cut_out};
+// Without packets: rays that go the same way are traced as any others.
+const Kernels kNeonCompactKernels = {neon::compact::intersect, neon::compact::occluded,
+                                     neon::compact::next_hit,  neon::compact::intersect,
+                                     neon::compact::occluded,  neon::compact::occluded_or_cut_out};
+}  // namespace steradian
 
 #endif

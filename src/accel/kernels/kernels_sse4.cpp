@@ -12,10 +12,16 @@
 
 namespace steradian {
 namespace sse4 {
+namespace {
+#include "accel/kernels/simd_sse4.inl"
+
+#include "accel/kernels/compact_lanes.inl"
+}  // namespace
+namespace full {
 // In cut_outs_sse4.cpp.
 void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
 namespace {
-#include "accel/kernels/simd_sse4.inl"
+#include "accel/kernels/layout_full.inl"
 
 #include "accel/kernels/kernel.inl"
 
@@ -23,6 +29,18 @@ namespace {
 
 #include "accel/kernels/packet.inl"
 }  // namespace
+}  // namespace full
+namespace compact {
+// In cut_outs_sse4.cpp.
+void occluded_or_cut_out(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+namespace {
+#include "accel/kernels/layout_compact.inl"
+
+#include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/entries.inl"
+}  // namespace
+}  // namespace compact
 }  // namespace sse4
 }  // namespace steradian
 
@@ -33,8 +51,13 @@ namespace {
 #endif
 
 namespace steradian {
-const Kernels kSse4Kernels = {sse4::intersect,          sse4::occluded,          sse4::next_hit,
-                              sse4::intersect_coherent, sse4::occluded_coherent, sse4::occluded_or_cut_out};
-}
+const Kernels kSse4Kernels = {sse4::full::intersect,         sse4::full::occluded,
+                              sse4::full::next_hit,          sse4::full::intersect_coherent,
+                              sse4::full::occluded_coherent, sse4::full::occluded_or_cut_out};
+// Without packets: rays that go the same way are traced as any others.
+const Kernels kSse4CompactKernels = {sse4::compact::intersect, sse4::compact::occluded,
+                                     sse4::compact::next_hit,  sse4::compact::intersect,
+                                     sse4::compact::occluded,  sse4::compact::occluded_or_cut_out};
+}  // namespace steradian
 
 #endif

@@ -118,7 +118,7 @@ inline bool form(Packet& p, const World& world) {
         p.one_origin = p.one_origin && p.o_range[axis][0] == p.o_range[axis][1];
     }
     p.least_start = least(Float16::load(p.start));
-    p.nodes = world.upper.nodes;
+    p.nodes = static_cast<const WideNode*>(world.upper.nodes);
     p.started = p.pending = p.open_count = 0;
     return true;
 }

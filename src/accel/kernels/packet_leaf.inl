@@ -65,7 +65,7 @@ struct ExactGroup {
     ExactGroup(const Packet& p, const World& world, const uint32_t* rays, const uint32_t* places) {
         const float *triangle[kGroup], *ray[kGroup];
         for (uint32_t k = 0; k < kGroup; ++k) {
-            triangle[k] = &world.upper.blocks[places[k] / kBlock].vertex[0][0][places[k] % kBlock];
+            triangle[k] = &block_at(world.upper, places[k] / kBlock).vertex[0][0][places[k] % kBlock];
             ray[k] = p.o[0] + rays[k];
         }
         Floats corner[3][3], o[3], d[3], inv_d[3];
@@ -124,7 +124,7 @@ inline void resolve_all(Packet& p, const World& world) {
         for (uint32_t k = 0; k < kGroup; ++k) {
             const uint32_t i = ray[k];
             limit_weights(of_p1[k], of_p2[k]);
-            p.best[i] = world.upper.blocks[place[k] / kBlock].prim[place[k] % kBlock];
+            p.best[i] = block_at(world.upper, place[k] / kBlock).prim[place[k] % kBlock];
             p.limit[i] = p.low[i] = t[k];
             p.u[i] = of_p1[k], p.v[i] = of_p2[k];
         }
@@ -136,7 +136,7 @@ inline void resolve_all(Packet& p, const World& world) {
 template <Mode kMode>
 [[gnu::noinline]] void test_pair(Packet& p, const World& world, uint32_t i, uint32_t place) {
     const Ray& ray = *p.ray[i];
-    const TriangleBlock& block = world.upper.blocks[place / kBlock];
+    const TriangleBlock& block = block_at(world.upper, place / kBlock);
     const uint32_t lane = place % kBlock;
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     const TriangleRay triangle_ray(ray);
@@ -167,7 +167,7 @@ template <Mode kMode>
             if (exact.undecided >> k & 1) {
                 test_pair<kMode>(p, world, i, place[k]);
             } else if (p.start[i] <= ts[k] && ts[k] <= p.limit[i]) {
-                const uint32_t id = world.upper.blocks[place[k] / kBlock].prim[place[k] % kBlock];
+                const uint32_t id = block_at(world.upper, place[k] / kBlock).prim[place[k] % kBlock];
                 take<kMode>(p, i, ts[k], id, {us[k], vs[k], ws[k], {}});
             }
         }
@@ -302,7 +302,7 @@ inline void test_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays
     for (uint32_t b = 0; b < blocks; ++b)
         for (int corner = 0; corner < 3; ++corner)
             for (int k = 0; k < 3; ++k) {
-                const Float4 at = Float4::load(world.upper.blocks[first + b].vertex[corner][p.axis[k]]);
+                const Float4 at = Float4::load(block_at(world.upper, first + b).vertex[corner][p.axis[k]]);
                 (kOneOrigin ? at - Float4::all(p.o_range[p.axis[k]][0]) : at).store(moved[b].vertex[corner][k]);
             }
     const Float8 error = Float8::all(errors.edge), minus_error = Float8::all(-errors.edge);
@@ -322,7 +322,7 @@ inline void test_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays
                 close[lane] = ~missed;
                 some |= uint32_t((g.used & ~missed) != 0) << lane;
             }
-            for (some &= triangles_of(world.upper.blocks[first + b]); some; some &= some - 1) {
+            for (some &= triangles_of(block_at(world.upper, first + b)); some; some &= some - 1) {
                 const auto lane = static_cast<uint32_t>(__builtin_ctz(some));
                 test_close<kMode, kOneOrigin>(p, g, moved[b], (first + b) * kBlock + lane, sheared[lane],
                                               close[lane] & g.used, errors);

@@ -11,7 +11,7 @@ namespace {
 
 struct Entry {
     Isa isa;
-    const Kernels* kernels;
+    const Kernels *full, *compact;
     bool supported;
 };
 
@@ -23,14 +23,15 @@ std::vector<Entry> entries() {
     const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
     const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
-    return {{Isa::avx512, &kAvx512Kernels, avx512},
-            {Isa::avx2, &kAvx2Kernels, avx2},
-            {Isa::sse4, &kSse4Kernels, sse4},
-            {Isa::scalar, &kScalarKernels, true}};
+    return {{Isa::avx512, &kAvx512Kernels, &kAvx512CompactKernels, avx512},
+            {Isa::avx2, &kAvx2Kernels, &kAvx2CompactKernels, avx2},
+            {Isa::sse4, &kSse4Kernels, &kSse4CompactKernels, sse4},
+            {Isa::scalar, &kScalarKernels, &kScalarCompactKernels, true}};
 #elif defined(__aarch64__)
-    return {{Isa::neon, &kNeonKernels, true}, {Isa::scalar, &kScalarKernels, true}};
+    return {{Isa::neon, &kNeonKernels, &kNeonCompactKernels, true},
+            {Isa::scalar, &kScalarKernels, &kScalarCompactKernels, true}};
 #else
-    return {{Isa::scalar, &kScalarKernels, true}};
+    return {{Isa::scalar, &kScalarKernels, &kScalarCompactKernels, true}};
 #endif
 }
 
@@ -49,7 +50,7 @@ std::vector<Isa> supported_isas() {
     return isas;
 }
 
-Result<const Kernels*> select_kernels(Isa isa) {
+Result<const Kernels*> select_kernels(Isa isa, BvhLayout layout) {
     if (isa == Isa::automatic) {
         const char* wanted = std::getenv("STERADIAN_ISA");
         const std::optional<Isa> named = find_name<Isa>(wanted && *wanted ? wanted : name_of(Isa::automatic));
@@ -59,7 +60,7 @@ Result<const Kernels*> select_kernels(Isa isa) {
         isa = *named == Isa::automatic ? supported_isas().front() : *named;
     }
     for (const Entry& e : entries())
-        if (e.isa == isa && e.supported) return e.kernels;
+        if (e.isa == isa && e.supported) return layout == BvhLayout::compact ? e.compact : e.full;
     return unusable("this machine does not have the instruction set " + std::string(name_of(isa)));
 }
 

@@ -5,6 +5,9 @@ struct Float8 {
     __m256 v;
     static Float8 load(const float* p) { return {_mm256_load_ps(p)}; }
     static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
+    static Float8 of_bytes(const uint8_t* p) {
+        return {_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))))};
+    }
     void store(float* p) const { _mm256_store_ps(p, v); }
 };
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
@@ -69,23 +72,24 @@ inline __m256i places_of(uint32_t bits) {
     return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(bytes)));
 }
 
+#include "accel/kernels/avx_lanes.inl"
+
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
 inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
-    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
-    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    const __m256i lane = lanes_in_order(node, octant_shift);
     return at_most({_mm256_permutevar8x32_ps(in.v, lane)}, {_mm256_permutevar8x32_ps(out.v, lane)});
 }
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
 /// Writes up to kWidth entries, whatever the number.
-inline uint32_t push_met(Float8 in, Float8 out, float limit, const WideNode& node, uint32_t octant_shift, float* t_in,
+template <class AnyNode>
+inline uint32_t push_met(Float8 in, Float8 out, float limit, const AnyNode& node, uint32_t octant_shift, float* t_in,
                          uint32_t* ref) {
-    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
     const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
-    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    const __m256i lane = lanes_in_order(node, octant_shift);
     const __m256 ordered = _mm256_permutevar8x32_ps(in.v, lane);
-    const uint32_t met =
-        at_most({ordered}, {_mm256_permutevar8x32_ps(out.v, lane)}) & at_most({ordered}, Float8::all(limit));
+    const uint32_t met = at_most({ordered}, {_mm256_permutevar8x32_ps(out.v, lane)}) &
+                         at_most({ordered}, Float8::all(limit)) & present_in_order(node);
     const __m256i pack = places_of(met);
     _mm256_storeu_ps(t_in, _mm256_permutevar8x32_ps(ordered, pack));
     const __m256i from = _mm256_permutevar8x32_epi32(lane, pack);
@@ -93,12 +97,13 @@ inline uint32_t push_met(Float8 in, Float8 out, float limit, const WideNode& nod
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
 /// Pushes the children whose bits are set, in no particular order; returns their number. Writes kWidth entries.
-inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
+template <class AnyNode>
+inline uint32_t push_met(uint32_t met, const AnyNode& node, uint32_t* ref) {
+    met &= present(node);
     const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref), _mm256_permutevar8x32_epi32(child, places_of(met)));
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
 
-#include "accel/kernels/avx_lanes.inl"
 inline Float4 gathered(const float* const* from, ptrdiff_t offset) { return gathered4(from, offset); }
 #include "accel/kernels/float16_pair.inl"

@@ -5,6 +5,9 @@ struct Float8 {
     __m256 v;
     static Float8 load(const float* p) { return {_mm256_load_ps(p)}; }
     static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
+    static Float8 of_bytes(const uint8_t* p) {
+        return {_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p))))};
+    }
     void store(float* p) const { _mm256_store_ps(p, v); }
 };
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm256_add_ps(a.v, b.v)}; }
@@ -34,6 +37,7 @@ inline void set_where(uint32_t bits, uint32_t value, uint32_t* eight) {
 
 struct Double4 {
     __m256d v;
+    static Double4 of(Float4 a) { return {_mm256_cvtps_pd(a.v)}; }
     static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
     static Double4 all(double x) { return {_mm256_set1_pd(x)}; }
     void store(double* p) const { _mm256_store_pd(p, v); }
@@ -49,30 +53,34 @@ inline Double4 smaller(Double4 a, Double4 b) { return {_mm256_min_pd(a.v, b.v)};
 inline uint32_t not_negative(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_GE_OQ); }
 inline uint32_t not_positive(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_setzero_pd(), _CMP_LE_OQ); }
 
+#include "accel/kernels/avx_lanes.inl"
+
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
 inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
-    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
-    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    const __m256i lane = lanes_in_order(node, octant_shift);
     return at_most({_mm256_permutexvar_ps(lane, in.v)}, {_mm256_permutexvar_ps(lane, out.v)});
 }
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
 /// Writes up to kWidth entries, whatever the number.
-inline uint32_t push_met(Float8 in, Float8 out, float limit, const WideNode& node, uint32_t octant_shift, float* t_in,
+template <class AnyNode>
+inline uint32_t push_met(Float8 in, Float8 out, float limit, const AnyNode& node, uint32_t octant_shift, float* t_in,
                          uint32_t* ref) {
-    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.order));
     const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
-    const __m256i lane = _mm256_srl_epi32(order, _mm_cvtsi32_si128(static_cast<int>(octant_shift)));
+    const __m256i lane = lanes_in_order(node, octant_shift);
     const __m256 ordered = _mm256_permutexvar_ps(lane, in.v);
-    const __mmask8 met = _mm256_mask_cmp_ps_mask(_mm256_cmp_ps_mask(ordered, _mm256_set1_ps(limit), _CMP_LE_OQ),
-                                                 ordered, _mm256_permutexvar_ps(lane, out.v), _CMP_LE_OQ);
+    const __mmask8 below = _mm256_cmp_ps_mask(ordered, _mm256_set1_ps(limit), _CMP_LE_OQ);
+    const __mmask8 met = _mm256_mask_cmp_ps_mask(static_cast<__mmask8>(below & present_in_order(node)), ordered,
+                                                 _mm256_permutexvar_ps(lane, out.v), _CMP_LE_OQ);
     _mm256_storeu_ps(t_in, _mm256_maskz_compress_ps(met, ordered));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref),
                         _mm256_maskz_compress_epi32(met, _mm256_permutexvar_epi32(lane, child)));
     return static_cast<uint32_t>(__builtin_popcount(met));
 }
 /// Pushes the children whose bits are set, in no particular order; returns their number. Writes kWidth entries.
-inline uint32_t push_met(uint32_t met, const WideNode& node, uint32_t* ref) {
+template <class AnyNode>
+inline uint32_t push_met(uint32_t met, const AnyNode& node, uint32_t* ref) {
+    met &= present(node);
     const __m256i child = _mm256_load_si256(reinterpret_cast<const __m256i*>(node.child));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(ref),
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(met), child));
@@ -119,7 +127,6 @@ using Doubles = Double8;
 using Floats = Float8;
 inline constexpr uint32_t kGroup = 8;
 
-#include "accel/kernels/avx_lanes.inl"
 /// from[lane][offset] in every lane.
 inline Float8 gathered(const float* const* from, ptrdiff_t offset) {
     return {_mm256_set_m128(gathered4(from + 4, offset).v, gathered4(from, offset).v)};

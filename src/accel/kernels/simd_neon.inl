@@ -5,6 +5,10 @@ struct Float8 {
     float32x4_t lo, hi;
     static Float8 load(const float* p) { return {vld1q_f32(p), vld1q_f32(p + 4)}; }
     static Float8 all(float x) { return {vdupq_n_f32(x), vdupq_n_f32(x)}; }
+    static Float8 of_bytes(const uint8_t* p) {
+        const uint16x8_t words = vmovl_u8(vld1_u8(p));
+        return {vcvtq_f32_u32(vmovl_u16(vget_low_u16(words))), vcvtq_f32_u32(vmovl_high_u16(words))};
+    }
     void store(float* p) const { vst1q_f32(p, lo), vst1q_f32(p + 4, hi); }
 };
 inline Float8 operator+(Float8 a, Float8 b) { return {vaddq_f32(a.lo, b.lo), vaddq_f32(a.hi, b.hi)}; }
@@ -37,6 +41,10 @@ inline Double4 operator+(Double4 a, Double4 b) { return {vaddq_f64(a.lo, b.lo), 
 inline Double4 operator-(Double4 a, Double4 b) { return {vsubq_f64(a.lo, b.lo), vsubq_f64(a.hi, b.hi)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {vmulq_f64(a.lo, b.lo), vmulq_f64(a.hi, b.hi)}; }
 inline Double4 operator/(Double4 a, Double4 b) { return {vdivq_f64(a.lo, b.lo), vdivq_f64(a.hi, b.hi)}; }
+inline Float4 four(float a, float b, float c, float d) {
+    const float p[4] = {a, b, c, d};
+    return {vld1q_f32(p)};
+}
 inline Float4 to_floats(Double4 a) { return {vcvt_high_f32_f64(vcvt_f32_f64(a.lo), a.hi)}; }
 inline float64x2_t larger(float64x2_t a, float64x2_t b) { return vbslq_f64(vcgtq_f64(a, b), a, b); }
 inline float64x2_t smaller(float64x2_t a, float64x2_t b) { return vbslq_f64(vcltq_f64(a, b), a, b); }

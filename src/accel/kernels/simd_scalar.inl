@@ -17,6 +17,11 @@ struct Lanes {
         for (int i = 0; i < kLanes; ++i) a.v[i] = p[i];
         return a;
     }
+    static Lanes of_bytes(const uint8_t* p) {
+        Lanes a;
+        for (int i = 0; i < kLanes; ++i) a.v[i] = p[i];
+        return a;
+    }
     static Lanes all(T x) {
         Lanes a;
         for (int i = 0; i < kLanes; ++i) a.v[i] = x;
@@ -65,6 +70,7 @@ inline Float8 magnitude(const Float8& a) {
     for (int i = 0; i < 8; ++i) out.v[i] = std::fabs(a.v[i]);
     return out;
 }
+inline Float4 four(float a, float b, float c, float d) { return {{a, b, c, d}}; }
 inline Float4 to_floats(const Double4& a) {
     Float4 out;
     for (int i = 0; i < 4; ++i) out.v[i] = static_cast<float>(a.v[i]);

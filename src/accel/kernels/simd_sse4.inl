@@ -5,6 +5,11 @@ struct Float8 {
     __m128 lo, hi;
     static Float8 load(const float* p) { return {_mm_load_ps(p), _mm_load_ps(p + 4)}; }
     static Float8 all(float x) { return {_mm_set1_ps(x), _mm_set1_ps(x)}; }
+    static Float8 of_bytes(const uint8_t* p) {
+        const __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
+        return {_mm_cvtepi32_ps(_mm_cvtepu8_epi32(bytes)),
+                _mm_cvtepi32_ps(_mm_cvtepu8_epi32(_mm_srli_si128(bytes, 4)))};
+    }
     void store(float* p) const { _mm_store_ps(p, lo), _mm_store_ps(p + 4, hi); }
 };
 inline Float8 operator+(Float8 a, Float8 b) { return {_mm_add_ps(a.lo, b.lo), _mm_add_ps(a.hi, b.hi)}; }
@@ -36,6 +41,7 @@ inline Double4 operator+(Double4 a, Double4 b) { return {_mm_add_pd(a.lo, b.lo),
 inline Double4 operator-(Double4 a, Double4 b) { return {_mm_sub_pd(a.lo, b.lo), _mm_sub_pd(a.hi, b.hi)}; }
 inline Double4 operator*(Double4 a, Double4 b) { return {_mm_mul_pd(a.lo, b.lo), _mm_mul_pd(a.hi, b.hi)}; }
 inline Double4 operator/(Double4 a, Double4 b) { return {_mm_div_pd(a.lo, b.lo), _mm_div_pd(a.hi, b.hi)}; }
+inline Float4 four(float a, float b, float c, float d) { return {_mm_setr_ps(a, b, c, d)}; }
 inline Float4 to_floats(Double4 a) { return {_mm_movelh_ps(_mm_cvtpd_ps(a.lo), _mm_cvtpd_ps(a.hi))}; }
 inline Double4 larger(Double4 a, Double4 b) { return {_mm_max_pd(a.lo, b.lo), _mm_max_pd(a.hi, b.hi)}; }
 inline Double4 smaller(Double4 a, Double4 b) { return {_mm_min_pd(a.lo, b.lo), _mm_min_pd(a.hi, b.hi)}; }
