@@ -5,7 +5,7 @@
 /// column by column; what is left over at either end, and everything else, goes in the order in which it was given.
 class ScanOrder {
 public:
-    ScanOrder(const Ray* rays, size_t count) : count_(count) {
+    ScanOrder(const Ray* rays, size_t count) {
         const size_t first = end_of_row(rays, count, 0);
         const size_t second = end_of_row(rays, count, first);
         if (second == count) return;
@@ -47,7 +47,7 @@ private:
         return count;
     }
 
-    size_t count_, width_ = 0;
+    size_t width_ = 0;
     size_t first_ = 0, end_ = 0;  ///< of what is traced in bands
     size_t place_ = 0, band_ = 0, row_ = 0, column_ = 0;
 };
