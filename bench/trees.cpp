@@ -97,7 +97,7 @@ public:
     bool visit(uint32_t ref) {
         if (ChildRef::is_leaf(ref)) return visit_blocks(ref);
         ++visits_.nodes;
-        const WideNode& node = level_.nodes[ref];
+        const WideNode& node = static_cast<const WideNode*>(level_.nodes)[ref];
         for (uint32_t place = kWidth; place-- > 0;) {
             const uint32_t child = node.order[place] >> (3 * octant_) & 7;
             Box box;
@@ -115,7 +115,7 @@ private:
     bool visit_blocks(uint32_t ref) {
         for (uint32_t i = 0; i < ChildRef::count(ref); ++i) {
             ++visits_.blocks;
-            const TriangleBlock& block = level_.blocks[ChildRef::first(ref) + i];
+            const TriangleBlock& block = static_cast<const TriangleBlock*>(level_.blocks)[ChildRef::first(ref) + i];
             for (uint32_t lane = 0; lane < kBlock; ++lane) {
                 TriangleCandidate c;
                 if (!intersect_triangle(triangle_ray_, block.corner(0, lane), block.corner(1, lane),
@@ -176,7 +176,8 @@ std::optional<Error> measure_trees(const BenchMesh& mesh, const Options& options
     const auto add = [&](const std::string& name, Bvh bvh) {
         trees.push_back(std::make_unique<TracedTree>(mesh, name, std::move(bvh)));
     };
-    for (const OurSetting& setting : our_settings()) add(setting.name, our_tree(mesh, setting.options.builder));
+    for (const OurSetting& setting : our_settings())
+        if (setting.options.layout == BvhLayout::full) add(setting.name, our_tree(mesh, setting.options.builder));
     if (!options.only_ours) {
         add("Embree medium", gathered(embree_tree(mesh, false)));
         add("Embree high", gathered(embree_tree(mesh, true)));

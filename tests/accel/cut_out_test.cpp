@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/geometry.h"
-#include "accel/kernels/kernels.h"
-#include "base/names.h"
+#include "options.h"
 #include "scenes.h"
 #include "support/support.h"
 

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "accel/kernels/kernels.h"
 #include "accel/world.h"
-#include "base/names.h"
 #include "hostile.h"
+#include "options.h"
 
 namespace steradian::test {
 namespace {

@@ -6,11 +6,9 @@
 #include <map>
 
 #include "accel/instance.h"
-#include "accel/kernels/kernels.h"
 #include "accel/planar.h"
 #include "accel/sphere.h"
 #include "accel/triangle.h"
-#include "base/names.h"
 
 namespace steradian::test {
 
@@ -570,22 +568,6 @@ Accel::Occlusion BruteForce::occlusion(const Ray& ray) const {
     return result;
 }
 
-std::vector<AccelOptions> all_options() {
-    std::vector<AccelOptions> all;
-    const std::vector<Isa> isas = supported_isas();
-    for (uint8_t builder = 0; builder < names_of<BvhBuilder>().size(); ++builder)
-        for (size_t i = 0; i < isas.size(); ++i)
-            for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
-                AccelOptions options;
-                options.builder = static_cast<BvhBuilder>(builder);
-                options.isa = isas[i];
-                options.layout = layout;
-                if (layout == BvhLayout::full || options.builder == BvhBuilder::sah || i == builder % isas.size())
-                    all.push_back(options);
-            }
-    return all;
-}
-
 bool same_bits(const Hit& a, const Hit& b) {
     const auto bits = [](float x) { return std::bit_cast<uint32_t>(x); };
     return bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v) && a.prim == b.prim &&
@@ -603,11 +585,6 @@ std::string describe(const Hit& h) {
     char text[160];
     std::snprintf(text, sizeof text, "t %a u %a v %a prim %u instance %u", h.t, h.u, h.v, h.prim, h.instance);
     return text;
-}
-
-std::string describe(const AccelOptions& o) {
-    return std::string(name_of(o.builder)) + ", " + std::string(name_of(o.isa)) + ", max depth " +
-           std::to_string(o.max_depth) + ", " + std::string(name_of(o.layout));
 }
 
 }  // namespace steradian::test

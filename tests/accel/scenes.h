@@ -70,14 +70,9 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// Every builder with every kernel that the machine has, in the full layout; the compact layout by SAH with every
-/// kernel and by each other builder with one of them.
-std::vector<AccelOptions> all_options();
-
 /// Every bit of every member.
 bool same_bits(const Hit& a, const Hit& b);
 std::string describe(const Ray& ray);
 std::string describe(const Hit& hit);
-std::string describe(const AccelOptions& options);
 
 }  // namespace steradian::test
