@@ -240,7 +240,8 @@ TEST(Oracle, PacketsTellSheetsApart) {
     TriangleMesh mesh;
     constexpr int kSheets = 24;
     for (int i = 0; i < kSheets; ++i) {
-        const float z = -100 - static_cast<float>(i * 7 % kSheets) * 0x1p-17f;  // a float at 100 is 2^-17 wide
+        // A float at 100 is 2^-17 wide. The nearest sheet has not the smallest id, which would win a tie of t.
+        const float z = -100 - static_cast<float>((i * 7 + 11) % kSheets) * 0x1p-17f;
         mesh.add({-9, -9, z}, {9, -9, z}, {9, 9, z});
         mesh.add({-9, -9, z}, {9, 9, z}, {-9, 9, z});
     }
