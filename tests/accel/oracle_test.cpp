@@ -98,7 +98,7 @@ void cut_at_hits(std::vector<Ray>& rays, std::vector<Hit>& hits, const BruteForc
 
 TEST(Oracle, EveryBitOfEveryHit) {
     const std::vector<TestScene> scenes = hard_scenes();
-    const size_t total = by_tier<size_t>(400'000, 10'000'000);
+    const size_t total = by_tier<size_t>(200'000, 10'000'000);
     size_t hit = 0, shot = 0;
     for (size_t s = 0; s < scenes.size(); ++s) {
         const BruteForce brute(scenes[s]);
