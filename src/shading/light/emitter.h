@@ -25,8 +25,7 @@ struct MeshEmitter {
 };
 
 /// A sphere that is one in world space as well: sampled uniformly over the cone it fills, from inside over all
-/// directions, from
-/// the surface itself over the area.
+/// directions, from the surface itself over the area.
 struct SphereEmitter {
     Vec3d center;
     double radius = 0;
