@@ -3,7 +3,7 @@
 
     bench/plot.py STUDY.csv [FOLDER]        writes FOLDER/study-rays.svg and FOLDER/study-build.svg (docs/images)
 
-Needs nothing but Python's standard library.
+Needs nothing but Python's standard library. render.py draws with it too.
 """
 import csv
 import math
@@ -65,7 +65,7 @@ def label(value):
     return f"{value:g}"
 
 
-def frame(x, y, title, y_name):
+def frame(x, y, title, x_name, y_name):
     out = [text(LEFT, 24, title, "start", ' font-weight="bold"')]
     for tick in y.ticks:
         out.append(f'<path d="M{LEFT} {y(tick):.1f}H{WIDTH - RIGHT}" stroke="#ddd"/>')
@@ -73,7 +73,7 @@ def frame(x, y, title, y_name):
     for tick in x.ticks:
         out.append(f'<path d="M{x(tick):.1f} {TOP}V{HEIGHT - BOTTOM}" stroke="#eee"/>')
         out.append(text(x(tick), HEIGHT - BOTTOM + 18, label(tick)))
-    out.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, "triangles"))
+    out.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_name))
     middle = (TOP + HEIGHT - BOTTOM) / 2
     out.append(text(18, middle, y_name, "middle", f' transform="rotate(-90 18 {middle})"'))
     return out
@@ -83,9 +83,9 @@ def curve(points, x, y, colour, dashed):
     path = "L".join(f"{x(p[0]):.1f} {y(p[1]):.1f}" for p in points)
     dash = ' stroke-dasharray="6 4"' if dashed else ""
     out = [f'<path d="M{path}" fill="none" stroke="{colour}" stroke-width="2"{dash}/>']
-    for triangles, value, lowest, highest in points:  # the dot is the median, the bar all repetitions
-        out.append(f'<circle cx="{x(triangles):.1f}" cy="{y(value):.1f}" r="2.6" fill="{colour}"/>')
-        out.append(f'<path d="M{x(triangles):.1f} {y(lowest):.1f}V{y(highest):.1f}" stroke="{colour}"/>')
+    for place, value, lowest, highest in points:  # the dot is the median, the bar all repetitions
+        out.append(f'<circle cx="{x(place):.1f}" cy="{y(value):.1f}" r="2.6" fill="{colour}"/>')
+        out.append(f'<path d="M{x(place):.1f} {y(lowest):.1f}V{y(highest):.1f}" stroke="{colour}"/>')
     return out
 
 
@@ -99,12 +99,12 @@ def key(entries):
     return out
 
 
-def draw(path, title, y_name, lines, logarithmic):
-    """`lines` is a list of (name, colour, dashed, points)."""
+def draw(path, title, x_name, y_name, lines, logarithmic):
+    """`lines` is a list of (name, colour, dashed, points), a point (x, value, lowest, highest)."""
     points = [point for line in lines for point in line[3]]
     x = Axis([p[0] for p in points], LEFT, WIDTH - RIGHT, True)
     y = Axis([v for p in points for v in p[1:]], HEIGHT - BOTTOM, TOP, logarithmic)
-    body = [f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>'] + frame(x, y, title, y_name)
+    body = [f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>'] + frame(x, y, title, x_name, y_name)
     for _, colour, dashed, series in lines:
         body += curve(series, x, y, colour, dashed)
     body += key([line[:3] for line in lines])
@@ -136,8 +136,8 @@ def main(arguments):
         print(f"{arguments[0]}: no figures in it", file=sys.stderr)
         return 3
     folder.mkdir(parents=True, exist_ok=True)
-    draw(folder / "study-rays.svg", "Rays, one thread", "millions of rays per second", ray_lines(table), False)
-    draw(folder / "study-build.svg", "Build", "milliseconds", build_lines(table), True)
+    draw(folder / "study-rays.svg", "Rays, one thread", "triangles", "millions of rays per second", ray_lines(table), False)
+    draw(folder / "study-build.svg", "Build", "triangles", "milliseconds", build_lines(table), True)
     return 0
 
 
