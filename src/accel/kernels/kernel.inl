@@ -110,6 +110,19 @@ inline uint32_t pop(Flight& f) {
     return f.ref[f.depth];
 }
 
+/// Asks for the memory that a reference leads to. Without a branch, as nobody can guess whether that is a node or a leaf;
+/// what is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes
+/// calls of functions that do nothing but prefetch, so this one must be inlined before it notices.)
+[[gnu::always_inline]] inline void prefetch(const LevelView& level, uint32_t ref) {
+    const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
+    const uintptr_t leaf = all_if(ChildRef::is_leaf(ref)), blocks = all_if(ref < ChildRef::kFirstOther);
+    const uintptr_t node = reinterpret_cast<uintptr_t>(level.nodes) + uintptr_t(ref) * sizeof(Node);
+    const uintptr_t block = reinterpret_cast<uintptr_t>(level.blocks) + (first_block(ref) & blocks) * kBlockBytes;
+    const uintptr_t place = (block & leaf) | (node & ~leaf);
+    for (size_t line = 0; line < kPrefetchBytes; line += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(place + line));
+}
+
 /// slab_interval() for the children of a node, from the start of the range on.
 inline void test_children(const Flight& f, const Node& node, Float8& in, Float8& out) {
     in = Float8::all(f.start), out = Float8::all(kInfinity);
@@ -150,20 +163,31 @@ inline void visit_node_alone(Flight& f) {
         f.next = pop<kMode>(f);
         return;
     }
+    auto nearest = static_cast<uint32_t>(__builtin_ctz(met));
+    met &= met - 1;
+    if (is_any(kMode)) {  // one hit is as good as another
+        for (; met; met &= met - 1) {
+            const uint32_t ref = node.child[__builtin_ctz(met)];
+            prefetch(f.level, ref);
+            f.ref[f.depth++] = ref;
+        }
+        f.next = node.child[nearest];
+        return;
+    }
     alignas(32) float t_in[kWidth];
     in.store(t_in);
-    auto nearest = static_cast<uint32_t>(__builtin_ctz(met));
     const uint32_t base = f.depth;
-    for (met &= met - 1; met; met &= met - 1) {
+    for (; met; met &= met - 1) {
         auto child = static_cast<uint32_t>(__builtin_ctz(met));
         if (t_in[child] < t_in[nearest]) std::swap(child, nearest);
         uint32_t place = f.depth++;
-        for (; !is_any(kMode) && place > base && f.t_in[place - 1] < t_in[child]; --place) {
+        for (; place > base && f.t_in[place - 1] < t_in[child]; --place) {
             f.t_in[place] = f.t_in[place - 1];
             f.ref[place] = f.ref[place - 1];
         }
         f.t_in[place] = t_in[child];
         f.ref[place] = node.child[child];
+        prefetch(f.level, node.child[child]);
     }
     f.next = node.child[nearest];
 }
@@ -394,26 +418,13 @@ inline uint8_t occlusion(const Hit& hit) {
     return hit.found() ? Accel::blocked : hit.instance != kNoHit ? Accel::cut_out : Accel::clear;
 }
 
-/// Asks for the memory of what comes next. Without a branch, as nobody can guess whether that is a node or a leaf; what
-/// is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes calls
-/// of functions that do nothing but prefetch, so this one must be inlined before it notices.)
-[[gnu::always_inline]] inline void prefetch(const Flight& f) {
-    const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
-    const uintptr_t leaf = all_if(ChildRef::is_leaf(f.next)), blocks = all_if(f.next < ChildRef::kFirstOther);
-    const uintptr_t node = reinterpret_cast<uintptr_t>(f.level.nodes) + uintptr_t(f.next) * sizeof(Node);
-    const uintptr_t block = reinterpret_cast<uintptr_t>(f.level.blocks) + (first_block(f.next) & blocks) * kBlockBytes;
-    const uintptr_t place = (block & leaf) | (node & ~leaf);
-    for (size_t line = 0; line < kPrefetchBytes; line += 64)
-        __builtin_prefetch(reinterpret_cast<const char*>(place + line));
-}
-
 /// Rays on their way, in two queues, because whether a ray is at a node or at a leaf next is the one thing that a
 /// processor cannot guess.
 template <uint32_t kCapacity>
 class Queues {
 public:
     void add(Flight& f) {
-        prefetch(f);
+        prefetch(f.level, f.next);
         const bool node = !ChildRef::is_leaf(f.next);
         at_node_[nodes_] = elsewhere_[others_] = &f;
         nodes_ += node, others_ += !node;
