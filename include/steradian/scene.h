@@ -121,6 +121,7 @@ struct MirrorMaterial {
 struct ConductorMaterial {
     std::variant<ComplexIndex, SchlickReflectance> reflectance;
     Roughness roughness;
+    Rgb tint{1, 1, 1};  ///< multiplies whatever is reflected: 1 for a real metal
 };
 
 using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,

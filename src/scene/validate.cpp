@@ -118,6 +118,7 @@ private:
     void check(const ConductorMaterial& m) const {
         check(m.reflectance);
         check(m.roughness);
+        color(m.tint, "the tint must be finite and not negative");
     }
 
     void check(const Mesh& m) const {

@@ -35,6 +35,7 @@ struct ConductorBsdf {
     };
     std::variant<ComplexIndex, Schlick> fresnel;
     Rgb mean_fresnel;
+    Rgb tint{1, 1, 1};
     Microfacets facets;
     const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
 };

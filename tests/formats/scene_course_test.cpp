@@ -114,13 +114,18 @@ TEST_F(CourseFiles, Spheres) {
     EXPECT_EQ(material.transmittance, (Rgb{0.2f, 0.7f, 0.8f}));
 }
 
-TEST_F(CourseFiles, RoughConductorsAreRefusedByName) {
-    for (const auto& [name, line] : {std::pair{"veach.json", 62u}, {"veach_debug.json", 44u}}) {
-        const auto loaded = load_scene((folder_ / name).string());
-        ASSERT_FALSE(loaded.ok());
-        EXPECT_NE(loaded.error().message.find("rough conductors are not supported yet"), std::string::npos);
-        EXPECT_EQ(loaded.error().where.line, line);
-        EXPECT_EQ(loaded.error().where.column, 15u);
+TEST_F(CourseFiles, RoughConductors) {
+    const LoadedScene veach = load("veach.json");
+    std::vector<ConductorMaterial> metals;
+    for (const Material& material : veach.scene.materials)
+        if (const auto* metal = std::get_if<ConductorMaterial>(&material)) metals.push_back(*metal);
+    ASSERT_EQ(metals.size(), 4u);
+    EXPECT_EQ(metals[1].roughness.value, (Vec2{0.05f, 0.05f}));
+    for (const ConductorMaterial& metal : metals) {
+        EXPECT_FALSE(metal.roughness.squared);
+        EXPECT_EQ(metal.tint, (Rgb{0.3f, 0.3f, 0.3f}));
+        EXPECT_EQ(std::get<ComplexIndex>(metal.reflectance).n, (Rgb{0.200438f, 0.924033f, 1.10221f}));
+        EXPECT_EQ(std::get<ComplexIndex>(metal.reflectance).k, (Rgb{3.91295f, 2.45285f, 2.14219f}));
     }
 }
 

@@ -131,7 +131,7 @@ TEST(NativeScene, Conductors) {
         load_good(scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}}, "materials": {
         "gold": {"type": "conductor", "metal": "gold"},
         "index": {"type": "conductor", "n": [0.2, 0.9, 1.1], "k": 3, "roughness": 0.5},
-        "brushed": {"type": "conductor", "reflectance": [0.9, 0.8, 0.7], "alpha": [0.1, 0.4]},
+        "brushed": {"type": "conductor", "reflectance": [0.9, 0.8, 0.7], "alpha": [0.1, 0.4], "tint": [0.5, 1, 1]},
         "textured": {"type": "conductor", "reflectance": "t", "edge_reflectance": 0.5, "roughness": "t"}})"));
     std::vector<ConductorMaterial> m;
     for (const Material& material : loaded.scene.materials) m.push_back(std::get<ConductorMaterial>(material));
@@ -147,6 +147,8 @@ TEST(NativeScene, Conductors) {
     EXPECT_EQ(std::get<SchlickReflectance>(m[2].reflectance).grazing, (Rgb{1, 1, 1}));
     EXPECT_EQ(m[2].roughness.value, (Vec2{0.1f, 0.4f}));
     EXPECT_FALSE(m[2].roughness.squared);
+    EXPECT_EQ(m[2].tint, (Rgb{0.5f, 1, 1}));
+    EXPECT_EQ(m[3].tint, (Rgb{1, 1, 1}));
     EXPECT_FALSE(m[2].roughness.texture);
     EXPECT_EQ(std::get<SchlickReflectance>(m[3].reflectance).grazing, (Rgb{0.5f, 0.5f, 0.5f}));
     EXPECT_EQ(m[3].roughness.value, (Vec2{1, 1}));

@@ -57,6 +57,7 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<ComplexIndex>(std::get<ConductorMaterial>(s.materials[4]).reflectance).n.b = 2; },
         [](Scene& s) { std::get<ComplexIndex>(std::get<ConductorMaterial>(s.materials[4]).reflectance).k.r = 2; },
         [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.value.y = 1; },
+        [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).tint.g = 0.5f; },
         [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.squared = false; },
         [](Scene& s) { std::get<ConductorMaterial>(s.materials[4]).roughness.texture = TextureId{0}; },
         [](Scene& s) {

@@ -33,6 +33,8 @@ void add_conductors(std::vector<MaterialCase>& out, TextureId white, TextureId o
     conductor("orange alpha 0.5", orange, rough(0.5f, 0.5f), false);
     out.push_back(
         {"conductor gold alpha 0.2", ConductorMaterial{*metal_index("gold"), rough(0.2f, 0.2f)}, false, 0.2f});
+    out.push_back({"conductor tinted gold alpha 0.3",
+                   ConductorMaterial{*metal_index("gold"), rough(0.3f, 0.3f), {0.3f, 0.5f, 0.9f}}, false, 0.3f});
     out.push_back({"conductor chromium smooth", ConductorMaterial{*metal_index("chromium"), {}}, false, 1});
 }
 

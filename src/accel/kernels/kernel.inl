@@ -110,9 +110,9 @@ inline uint32_t pop(Flight& f) {
     return f.ref[f.depth];
 }
 
-/// Asks for the memory that a reference leads to. Without a branch, as nobody can guess whether that is a node or a leaf;
-/// what is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC removes
-/// calls of functions that do nothing but prefetch, so this one must be inlined before it notices.)
+/// Asks for the memory that a reference leads to. Without a branch, as nobody can guess whether that is a node or a
+/// leaf; what is not a place in memory must still lead to one: addresses without memory behind them are slow. (GCC
+/// removes calls of functions that do nothing but prefetch, so this one must be inlined before it notices.)
 [[gnu::always_inline]] inline void prefetch(const LevelView& level, uint32_t ref) {
     const auto all_if = [](bool yes) { return uintptr_t(0) - uintptr_t(yes); };
     const uintptr_t leaf = all_if(ChildRef::is_leaf(ref)), blocks = all_if(ref < ChildRef::kFirstOther);

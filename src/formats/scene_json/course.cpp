@@ -22,6 +22,7 @@ constexpr Key kGeneratorKeys[] = {"type", "scale", "delta"};
 constexpr Key kDiffuseKeys[] = {"type", "texture_name", "color", "twosided"};
 constexpr Key kRefractionKeys[] = {"type", "eta"};
 constexpr Key kGlassKeys[] = {"type", "eta", "R", "T"};
+constexpr Key kConductorKeys[] = {"type", "alpha_x", "alpha_y", "etaI", "etaT", "k", "R", "texture_name"};
 constexpr Key kEnvironmentKeys[] = {"texture_name", "scale", "transform"};
 constexpr Key kMeshKeys[] = {"type", "path", "translate", "transform", "material_name", "light"};
 constexpr Key kSphereKeys[] = {"type", "path", "center", "radius", "translate", "transform", "material_name", "light"};
@@ -29,14 +30,16 @@ constexpr Key kLightKeys[] = {"type", "radiance"};
 
 constexpr json::ObjectSpec kTextureKinds[] = {
     {"constant", kConstantKeys}, {"image", kImageKeys}, {"checkerboard", kCheckerboardKeys}};
-constexpr json::ObjectSpec kMaterialKinds[] = {
-    {"diffuse", kDiffuseKeys}, {"refraction", kRefractionKeys}, {"glass", kGlassKeys}};
+constexpr json::ObjectSpec kMaterialKinds[] = {{"diffuse", kDiffuseKeys},
+                                               {"refraction", kRefractionKeys},
+                                               {"glass", kGlassKeys},
+                                               {"roughconductor", kConductorKeys}};
 constexpr json::ObjectSpec kObjectKinds[] = {{"mesh", kMeshKeys}, {"sphere", kSphereKeys}};
 
 constexpr Key kIntegratorTypes[] = {"intersection_test", "path", "bdpt", "photon"};
 constexpr Key kProfiles[] = {"RandomWalk", "NextEventEstimation", "MIS"};
 constexpr LightSampling kSamplingOfProfile[] = {LightSampling::bsdf, LightSampling::light, LightSampling::mis};
-constexpr Key kMaterialTypesWithRough[] = {"diffuse", "refraction", "glass", "roughconductor"};
+constexpr Key kMaterialTypesOfCourse[] = {"diffuse", "refraction", "glass", "roughconductor"};
 constexpr Key kObjectTypesOfCourse[] = {"mesh", "sphere"};
 constexpr Range kTextureScale{-1e6, 1e6};
 
@@ -51,6 +54,7 @@ private:
     void read_film(Value value);
     void read_camera(Value value);
     TextureId read_texture(Value value, const std::string& name);
+    ConductorMaterial read_conductor(ObjectReader& reader, const std::string& what);
     MaterialId read_material(Value value, const std::string& name);
     void read_object(Value value);
     void read_environment(Value value);
@@ -181,15 +185,36 @@ TextureId CourseLoader::read_texture(Value value, const std::string& name) {
     return assets_.add_texture(texture, name);
 }
 
+/// etaT + i k over etaI, and a tint: R, or a constant texture.
+ConductorMaterial CourseLoader::read_conductor(ObjectReader& reader, const std::string& what) {
+    static constexpr Range kIndex{1e-3, 1e3}, kExtinction{0, 1e3}, kAlpha{0, 1};
+    ConductorMaterial out;
+    const Rgb outside = reader.color_or("etaI", {1, 1, 1}, kIndex), n = reader.color("etaT", kIndex),
+              k = reader.color("k", kExtinction);
+    ComplexIndex relative;
+    for (int c = 0; c < 3; ++c) relative.n[c] = n[c] / outside[c], relative.k[c] = k[c] / outside[c];
+    out.reflectance = relative;
+    out.roughness.value.x = reader.number("alpha_x", kAlpha);
+    out.roughness.value.y = reader.number("alpha_y", kAlpha);
+    out.roughness.squared = false;
+    const auto texture = reader.find("texture_name");
+    if (texture && reader.find("R"))
+        source_.fail(reader.key_offset("R"), what + " has either 'texture_name' or 'R', not both");
+    out.tint = reader.color_or("R", out.tint, json::kReflectance);
+    if (texture) {
+        const TextureId id =
+            textures_.get(source_, json::read_string(source_, *texture, "'texture_name'"), texture->offset());
+        const auto* constant = std::get_if<ConstantTexture>(&context_.loaded.scene.textures[index(id)]);
+        if (!constant) source_.fail(texture->offset(), "the texture of a rough conductor must be constant");
+        out.tint = constant->value;
+    }
+    context_.warn_about_reflectance(out.tint, reader.offset());
+    return out;
+}
+
 MaterialId CourseLoader::read_material(Value value, const std::string& name) {
     const std::string what = "material " + quoted(name);
-    const size_t type = read_type(source_, value, what, kMaterialTypesWithRough);
-    if (type == 3) {
-        for (const Member member : value.members())
-            if (member.key == "type")
-                source_.fail(member.value.offset(), what + ": rough conductors are not supported yet",
-                             "use diffuse, refraction or glass");
-    }
+    const size_t type = read_type(source_, value, what, kMaterialTypesOfCourse);
     ObjectReader reader(source_, value, kMaterialKinds[type], what);
     reader.require("type");
     Material material;
@@ -209,6 +234,8 @@ MaterialId CourseLoader::read_material(Value value, const std::string& name) {
         material = diffuse;
     } else if (type == 1) {
         material = RefractionMaterial{reader.number_or("eta", 1.5f, kEta)};
+    } else if (type == 3) {
+        material = read_conductor(reader, what);
     } else {
         GlassMaterial glass;
         glass.eta = reader.number_or("eta", 1.5f, kEta);

@@ -29,8 +29,8 @@ inline constexpr Key kRefraction[] = {"type", "eta"};
 inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance", "roughness", "alpha"};
 inline constexpr Key kMirror[] = {"type", "reflectance"};
 inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance"};
-inline constexpr Key kConductor[] = {"type",      "metal", "n", "k", "reflectance", "edge_reflectance",
-                                     "roughness", "alpha"};
+inline constexpr Key kConductor[] = {"type",      "metal", "n",   "k", "reflectance", "edge_reflectance",
+                                     "roughness", "alpha", "tint"};
 
 inline constexpr Key kMeshShape[] = {"type", "path", "vertices", "triangles", "normals", "uvs"};
 inline constexpr Key kSphereShape[] = {"type", "center", "radius"};

@@ -132,6 +132,8 @@ ConductorMaterial NativeLoader::read_conductor(ObjectReader& material) {
         out.reflectance = schlick;
     }
     out.roughness = read_roughness(material);
+    out.tint = material.color_or("tint", out.tint, json::kReflectance);
+    context_.warn_about_reflectance(out.tint, material.offset());
     return out;
 }
 

@@ -22,6 +22,7 @@ inline ConductorBsdf make_lobe(const ConductorMaterial& material, const LobeCont
     }
     out.facets = microfacets(material.roughness, material.roughness.texture ? read(*material.roughness.texture).r : 1);
     out.energy = context.material.energy.get();
+    out.tint = material.tint;
     return out;
 }
 
@@ -56,12 +57,12 @@ inline LocalEval eval_local(const ConductorBsdf& lobe, Vec3d wo, Vec3d wi, bool)
     const Ggx ggx = lobe.facets.ggx();
     const Vec3d h = normalize(wo + wi);
     const double d = ggx.density(h), lost = multiple_bounces(lobe, wo);
-    LocalEval out{fresnel(lobe, dot(wo, h)) * static_cast<float>(d * ggx.masking_over_cosine(wo, wi) / 4),
+    LocalEval out{lobe.tint * fresnel(lobe, dot(wo, h)) * static_cast<float>(d * ggx.masking_over_cosine(wo, wi) / 4),
                   (1 - lost) * d * ggx.visible_over_projected(wo) / 4};
     if (!(lost > 0)) return out;
     const double mean = lobe.energy->mean_loss(lobe.facets);
     const double wide = lost * multiple_bounces(lobe, wi) / mean * wi.z / std::numbers::pi;
-    out.f_cos = out.f_cos + multiple_bounce_color(lobe.mean_fresnel, mean) * static_cast<float>(wide);
+    out.f_cos = out.f_cos + lobe.tint * multiple_bounce_color(lobe.mean_fresnel, mean) * static_cast<float>(wide);
     out.pdf += lost * WideLobe(lobe.facets).pdf(wi.z);
     return out;
 }
@@ -82,7 +83,8 @@ inline std::optional<BsdfSample> sample_lobe(const ConductorBsdf& lobe, const Lo
     if (!surface) return std::nullopt;
     const Vec3d wi = surface->reflected(wo);
     // Whichever normal it was reflected about, the angle to it is half of that between the directions.
-    return specular_sample(wi, fresnel(lobe, std::sqrt(clamp_to((1 + dot(Vec3d(wo), wi)) / 2, 0.0, 1.0))), false);
+    const double cosine = std::sqrt(clamp_to((1 + dot(Vec3d(wo), wi)) / 2, 0.0, 1.0));
+    return specular_sample(wi, lobe.tint * fresnel(lobe, cosine), false);
 }
 
 }  // namespace steradian
