@@ -151,17 +151,17 @@ Bvh our_tree(const BenchMesh& mesh, BvhBuilder builder) {
     LargeArray<BuildPrimitive> primitives;
     // Sound already: an Accel was built over it.
     (void)append_primitives(mesh.geometry(), 0, 0, primitives);
-    Cancellation cancelled;
+    BuildMonitor monitor;
     BvhOptions options;
     options.builder = builder;
     options.split_boxes = true;
-    return build_bvh(primitives, options, cancelled);
+    return build_bvh(primitives, options, monitor);
 }
 
 Bvh gathered(BinaryTree tree) {
     Bvh bvh;
-    Cancellation cancelled;
-    gather(*tree.root, tree.primitives, cancelled, bvh);
+    BuildMonitor monitor;
+    gather(*tree.root, tree.primitives, monitor, bvh);
     return bvh;
 }
 

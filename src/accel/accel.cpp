@@ -136,19 +136,19 @@ BvhOptions bvh_options(const AccelOptions& options, ItemKind mostly) {
 
 /// The hierarchies of the geometries that are not on the upper level; that these are sound is checked as well.
 Status build_levels(std::span<const Geometry> geometries, const std::vector<bool>& upper, const AccelOptions& options,
-                    Cancellation& cancelled, Built& built) {
+                    BuildMonitor& monitor, Built& built) {
     built.levels.resize(geometries.size());
     for (uint32_t i = 0; i < geometries.size(); ++i) {
         built.shapes.push_back(shapes_of(geometries[i]));
         if (upper[i]) continue;
         LargeArray<BuildPrimitive> primitives;
         if (Status status = append_primitives(geometries[i], i, 0, primitives); !status) return status;
-        cancelled.advance(primitives.size() * kReadWork);
-        if (cancelled.poll()) return cancelled_error();
+        monitor.advance(primitives.size() * kReadWork);
+        if (monitor.poll()) return cancelled_error();
         const LevelPart part{0, kNoHit, i};
         built.levels[i] = build_level(primitives, geometries, {&part, 1}, kNoHit,
-                                      bvh_options(options, kind_of(geometries[i])), cancelled);
-        if (cancelled.poll()) return cancelled_error();
+                                      bvh_options(options, kind_of(geometries[i])), monitor);
+        if (monitor.poll()) return cancelled_error();
     }
     for (const Level& level : built.levels) built.views.push_back(level.view());
     return Ok{};
@@ -170,7 +170,7 @@ Result<PlacedGeometry> place_instance(size_t index, const GeometryInstance& inst
 
 /// The upper level, over the primitives that are in place and the instances of everything else.
 Status build_upper(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
-                   const std::vector<bool>& upper, const AccelOptions& options, Cancellation& cancelled, Built& built) {
+                   const std::vector<bool>& upper, const AccelOptions& options, BuildMonitor& monitor, Built& built) {
     size_t count = 0;
     for (const GeometryInstance& i : instances)
         count += upper[i.geometry] ? primitive_count(geometries[i.geometry]) : 1;
@@ -183,11 +183,11 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         const auto first = static_cast<uint32_t>(primitives.size());
         if (Status status = append_primitives(geometries[geometry], geometry, first, primitives); !status)
             return status;
-        cancelled.advance((primitives.size() - first) * kReadWork);
+        monitor.advance((primitives.size() - first) * kReadWork);
         if (primitives.size() == first) continue;
         parts.push_back({first, i, geometry});
         built.parts.push_back({first, i});
-        if (cancelled.poll()) return cancelled_error();
+        if (monitor.poll()) return cancelled_error();
     }
     const auto first_instance = static_cast<uint32_t>(primitives.size());
     ItemKind mostly = parts.empty() ? ItemKind::instance : ItemKind::shape;
@@ -201,11 +201,11 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         built.instances.push_back(*placed);
         if (!bounds.empty()) primitives.emplace_back(placed->world, first_instance + i, ItemKind::instance);
     }
-    cancelled.advance((primitives.size() - first_instance) * kReadWork);
+    monitor.advance((primitives.size() - first_instance) * kReadWork);
     BvhOptions upper_options = bvh_options(options, mostly);
     upper_options.split_boxes = true;
-    built.upper = build_level(primitives, geometries, parts, first_instance, upper_options, cancelled);
-    return cancelled.poll() ? Status(cancelled_error()) : Status(Ok{});
+    built.upper = build_level(primitives, geometries, parts, first_instance, upper_options, monitor);
+    return monitor.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 
 template <class Array>
@@ -301,13 +301,13 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         auto data = std::make_unique<Data>();
         data->kernels = *kernels;
         const std::vector<bool> upper = upper_geometries(geometries, instances);
-        Cancellation cancelled(options.cancelled, options.progress, work_of(geometries, instances, upper));
+        BuildMonitor monitor(options.cancelled, options.progress, work_of(geometries, instances, upper));
         Built& built = data->built;
         built.layout = options.layout;
         built.on_upper_level = upper;
         for (const Geometry& geometry : geometries) built.sizes.push_back(size_of(geometry));
-        if (Status status = build_levels(geometries, upper, options, cancelled, built); !status) return status.error();
-        if (Status status = build_upper(geometries, instances, upper, options, cancelled, built); !status)
+        if (Status status = build_levels(geometries, upper, options, monitor, built); !status) return status.error();
+        if (Status status = build_upper(geometries, instances, upper, options, monitor, built); !status)
             return status.error();
         built.cut_outs = find_cut_outs(instances);
         data->statistics = count(geometries, built);

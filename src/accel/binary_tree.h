@@ -66,9 +66,9 @@ struct Subtree {
 };
 /// Divides by options.builder, which is sah or median, into `out`; see build_bvh, defined in bvh.cpp.
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
-            Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
+            BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
 
 /// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp.
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Cancellation& cancelled, Bvh& out);
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out);
 
 }  // namespace steradian

@@ -41,15 +41,15 @@ void cut(std::span<const MortonKey> keys, size_t begin, size_t end, std::vector<
 class FastBuilder {
 public:
     FastBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
-                Cancellation& cancelled)
-        : primitives_(primitives), options_(options), pool_(pool), cancelled_(cancelled) {}
+                BuildMonitor& monitor)
+        : primitives_(primitives), options_(options), pool_(pool), monitor_(monitor) {}
 
     BinaryNode* run() {
         const uint32_t needed = static_cast<uint32_t>(std::bit_width(primitives_.size())) + kLevelsBelow;
         if (needed > options_.max_depth) return nullptr;
         sort();
-        cancelled_.advance(primitives_.size() * kSortWork);
-        if (cancelled_.poll()) return nullptr;
+        monitor_.advance(primitives_.size() * kSortWork);
+        if (monitor_.poll()) return nullptr;
         find_treelets();
         BvhOptions options = options_;
         options.builder = BvhBuilder::sah, options.mostly = ItemKind::instance;
@@ -57,8 +57,8 @@ public:
         options.work = 0;
         BinaryPool::Source source(pool_);
         BinaryNode& root = *source.next();
-        divide(treelets_, {0, treelets_.size(), 0}, options, cancelled_, pool_, source, root);
-        if (cancelled_.poll()) return nullptr;
+        divide(treelets_, {0, treelets_.size(), 0}, options, monitor_, pool_, source, root);
+        if (monitor_.poll()) return nullptr;
         put_in_order();
         collect_leaves(root);
         divide_treelets();
@@ -119,11 +119,11 @@ private:
         options.builder = BvhBuilder::sah;
         options.work -= kSortWork;
         parallel_for(leaves_.size(), kTreeletChunk, [&](size_t begin, size_t end) {
-            if (cancelled_.poll()) return;
+            if (monitor_.poll()) return;
             BinaryPool::Source source(pool_);
             for (size_t i = begin; i < end; ++i) {
                 BinaryNode& leaf = *leaves_[i];
-                divide(primitives_, {leaf.begin, leaf.end, leaf.depth}, options, cancelled_, pool_, source, leaf);
+                divide(primitives_, {leaf.begin, leaf.end, leaf.depth}, options, monitor_, pool_, source, leaf);
             }
         });
     }
@@ -131,7 +131,7 @@ private:
     std::span<BuildPrimitive> primitives_;
     const BvhOptions& options_;
     BinaryPool& pool_;
-    Cancellation& cancelled_;
+    BuildMonitor& monitor_;
     LargeArray<BuildPrimitive> sorted_;     ///< along the curve
     std::vector<uint32_t> firsts_;          ///< where treelets begin along the curve, and where the last one ends
     std::vector<BuildPrimitive> treelets_;  ///< ids along the curve
@@ -142,8 +142,8 @@ private:
 }  // namespace
 
 BinaryNode* build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
-                       Cancellation& cancelled) {
-    return FastBuilder(primitives, options, pool, cancelled).run();
+                       BuildMonitor& monitor) {
+    return FastBuilder(primitives, options, pool, monitor).run();
 }
 
 }  // namespace steradian

@@ -15,6 +15,6 @@ namespace steradian {
 /// all the levels in between. Same promises as build_bvh; options.builder is not looked at. Without a root, and with
 /// nothing reordered, when options.max_depth is too small for that; without a root when cancelled.
 BinaryNode* build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
-                       Cancellation& cancelled);
+                       BuildMonitor& monitor);
 
 }  // namespace steradian

@@ -25,9 +25,9 @@ constexpr size_t kPrimitivesPerCut = 2;
 
 class BinaryBuilder {
 public:
-    BinaryBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled,
+    BinaryBuilder(std::span<BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor,
                   BinaryPool& pool)
-        : primitives_(primitives), options_(options), cancelled_(cancelled), pool_(pool) {}
+        : primitives_(primitives), options_(options), monitor_(monitor), pool_(pool) {}
 
     /// Primitives [begin, end); up to room_end there is room for what splits in space add.
     void run(BinaryNode& out, size_t begin, size_t end, size_t room_end, uint32_t depth, BinaryPool::Source& source) {
@@ -76,7 +76,7 @@ private:
 
     /// With ranges of which none was large enough to say so itself.
     void done(size_t primitives) {
-        cancelled_.advance(primitives * options_.work);
+        monitor_.advance(primitives * options_.work);
         reported_.fetch_add(primitives * options_.work, std::memory_order_relaxed);
     }
 
@@ -89,7 +89,7 @@ private:
     /// `range` is what there is in `room`. Nothing on the left: make a leaf.
     Halves split(std::span<BuildPrimitive> range, std::span<BuildPrimitive> room, const RangeBounds& bounds,
                  uint32_t depth) {
-        const bool last = depth >= options_.max_depth || (range.size() >= kTaskGrain && cancelled_.poll());
+        const bool last = depth >= options_.max_depth || (range.size() >= kTaskGrain && monitor_.poll());
         const bool few = range.size() <= kMaxSahLeaf;
         ItemKind kind = options_.mostly;
         if (last || few) {
@@ -115,13 +115,13 @@ private:
 
     std::span<BuildPrimitive> primitives_;
     const BvhOptions& options_;
-    Cancellation& cancelled_;
+    BuildMonitor& monitor_;
     BinaryPool& pool_;
     RangeBounds whole_;
     std::atomic<uint64_t> reported_{0};
 };
 
-void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled,
+void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor,
                         BinaryPool& pool, Bvh& out) {
     const size_t count = primitives.size(), most = max_items(options.layout);
     const size_t added = options.split_boxes ? std::min(count / kPrimitivesPerCut, most - count) : 0;
@@ -130,40 +130,40 @@ void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOpt
     // Reinsertion takes about two thirds of the time.
     BvhOptions dividing = options;
     dividing.work = options.work / 3;
-    BinaryBuilder builder(work, dividing, cancelled, pool);
+    BinaryBuilder builder(work, dividing, monitor, pool);
     BinaryPool::Source source(pool);
     BinaryNode& root = *source.next();
     builder.run(root, 0, count, work.size(), 0, source);
-    if (cancelled.poll()) return;
+    if (monitor.poll()) return;
     const uint64_t all = count * options.work;
-    reinsert(root, work, options.max_depth, cancelled, all - std::min(all, builder.reported()));
-    if (!cancelled.poll()) gather(root, work, cancelled, out);
+    reinsert(root, work, options.max_depth, monitor, all - std::min(all, builder.reported()));
+    if (!monitor.poll()) gather(root, work, monitor, out);
 }
 
 }  // namespace
 
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
-            Cancellation& cancelled, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out) {
-    BinaryBuilder builder(primitives, options, cancelled, pool);
+            BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out) {
+    BinaryBuilder builder(primitives, options, monitor, pool);
     builder.run(out, subtree.begin, subtree.end, subtree.end, subtree.depth, source);
 }
 
-Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled) {
+Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor) {
     Bvh out;
     if (primitives.empty()) return out;
     BinaryPool pool;
     if (options.builder == BvhBuilder::high_quality) {
-        build_high_quality(primitives, options, cancelled, pool, out);
+        build_high_quality(primitives, options, monitor, pool, out);
         return out;
     }
     BinaryNode* root = nullptr;
-    if (options.builder == BvhBuilder::fast) root = build_fast(primitives, options, pool, cancelled);
+    if (options.builder == BvhBuilder::fast) root = build_fast(primitives, options, pool, monitor);
     if (!root) {
         BinaryPool::Source source(pool);
         root = source.next();
-        divide(primitives, {0, primitives.size(), 0}, options, cancelled, pool, source, *root);
+        divide(primitives, {0, primitives.size(), 0}, options, monitor, pool, source, *root);
     }
-    if (!cancelled.poll()) gather(*root, primitives, cancelled, out);
+    if (!monitor.poll()) gather(*root, primitives, monitor, out);
     return out;
 }
 

@@ -1,13 +1,11 @@
 // The hierarchy itself, and how one is built over boxes.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "accel/build_monitor.h"
 #include "accel/split.h"
 #include "accel/wide_node.h"
 #include "base/large_array.h"
@@ -35,44 +33,6 @@ struct Bvh {
 
 inline constexpr uint32_t kBlock = 4;
 
-/// What a build says to its caller, and hears: how much is done, and that it is to stop, which is remembered. The
-/// caller's functions are called from one thread at a time; a thread that finds another one asking, or that is asked
-/// again from within such a function, goes on with what is known.
-class Cancellation {
-public:
-    /// `work` is what will be announced in all; without functions nobody asks and nobody is told.
-    explicit Cancellation(std::function<bool()> asked = {}, std::function<void(double)> told = {}, uint64_t work = 1)
-        : asked_(std::move(asked)), told_(std::move(told)), work_(work) {}
-    bool poll() {
-        if (stop_.load(std::memory_order_relaxed)) return true;
-        if (!asked_ && !told_) return false;
-        // Not a mutex: one thread may get here twice, when the function waits for tasks that poll.
-        if (asking_.exchange(true, std::memory_order_acquire)) return stop_.load(std::memory_order_relaxed);
-        if (asked_ && asked_()) stop_.store(true, std::memory_order_relaxed);
-        if (!stop_.load(std::memory_order_relaxed)) tell();
-        asking_.store(false, std::memory_order_release);
-        return stop_.load(std::memory_order_relaxed);
-    }
-    /// Of the work that was announced.
-    void advance(uint64_t work) { done_.fetch_add(work, std::memory_order_relaxed); }
-
-private:
-    /// 1 is for the caller, when nothing can go wrong any more.
-    void tell() {
-        const double fraction = static_cast<double>(done_) / static_cast<double>(work_);
-        if (!told_ || fraction <= last_ || fraction >= 1) return;
-        last_ = fraction;
-        told_(fraction);
-    }
-
-    const std::function<bool()> asked_;
-    const std::function<void(double)> told_;
-    const uint64_t work_;
-    std::atomic<uint64_t> done_{0};
-    double last_ = 0;  ///< of whoever is asking
-    std::atomic<bool> asking_{false}, stop_{false};
-};
-
 /// What a primitive's way through the stages takes, in tenths of the whole, roughly as measured.
 inline constexpr uint64_t kReadWork = 1, kDivideWork = 6, kGatherWork = 2, kPackWork = 1;
 inline constexpr uint64_t kBuildWork = kReadWork + kDivideWork + kGatherWork + kPackWork;
@@ -88,10 +48,10 @@ struct BvhOptions {
 
 /// O(n log n) whatever the boxes are: where the surface-area heuristic finds nothing or would run out of levels, the
 /// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. A leaf holds one kind.
-/// Uses all workers of the caller's arena; the result does not depend on their number. Check `cancelled.poll()`
+/// Uses all workers of the caller's arena; the result does not depend on their number. Check `monitor.poll()`
 /// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. At most max_items() boxes
 /// (compact.h), all of them finite; reorders them. With split boxes a primitive may be in several leaves, and there are
 /// at most half as many again.
-Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, Cancellation& cancelled);
+Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor);
 
 }  // namespace steradian

@@ -15,7 +15,7 @@ bool holds_blocks(uint32_t ref) { return ChildRef::is_leaf(ref) && ChildRef::kin
 
 }  // namespace
 
-CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t id)>& triangle, Cancellation& cancelled,
+CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t id)>& triangle, BuildMonitor& monitor,
                           uint64_t work) {
     CompactLevel out;
     out.nodes.resize(bvh.nodes.size());
@@ -32,7 +32,7 @@ CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t 
     };
     const auto done_by = [&](size_t node) { return work * node / bvh.nodes.size(); };
     parallel_for(bvh.nodes.size(), kChunk, [&](size_t begin, size_t end) {
-        if (cancelled.poll()) return;
+        if (monitor.poll()) return;
         std::vector<uint64_t>& chunk = chunks[begin / kChunk];
         for (size_t i = begin; i < end; ++i) {
             const uint32_t children = child_count(bvh.nodes[i]);
@@ -41,9 +41,9 @@ CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t 
                 if (holds_blocks(node.child[c])) node.child[c] = add_run(node.child[c], chunk);
         }
         chunk.shrink_to_fit();
-        cancelled.advance(done_by(end) - done_by(begin));
+        monitor.advance(done_by(end) - done_by(begin));
     });
-    if (cancelled.poll()) return {};
+    if (monitor.poll()) return {};
     decltype(bvh.nodes)().swap(bvh.nodes);
     decltype(bvh.blocks)().swap(bvh.blocks);
 

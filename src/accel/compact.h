@@ -24,7 +24,7 @@ constexpr uint32_t max_items(BvhLayout layout) {
 
 /// `triangle` gives the corners of an id. Lets go of the nodes and blocks of `bvh`. `work` is what to report in all.
 /// Unfinished when cancelled.
-CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t id)>& triangle, Cancellation& cancelled,
+CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t id)>& triangle, BuildMonitor& monitor,
                           uint64_t work);
 
 }  // namespace steradian

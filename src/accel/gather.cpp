@@ -45,8 +45,8 @@ Children children_of(const BinaryNode& parent) {
 
 class Gatherer {
 public:
-    Gatherer(std::span<const BuildPrimitive> primitives, Cancellation& cancelled, Bvh& out)
-        : primitives_(primitives), cancelled_(cancelled), out_(out) {}
+    Gatherer(std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out)
+        : primitives_(primitives), monitor_(monitor), out_(out) {}
 
     void run(BinaryNode& root) {
         out_.bounds = root.box.box();
@@ -54,16 +54,16 @@ public:
         const float scale = 1 / max_component(size);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
         decide(root);
-        cancelled_.advance(primitives_.size());
-        if (cancelled_.poll()) return;
+        monitor_.advance(primitives_.size());
+        if (monitor_.poll()) return;
         const Totals totals = count(root);
-        if (cancelled_.poll()) return;
+        if (monitor_.poll()) return;
         out_.nodes.resize(totals.nodes);
         out_.blocks.resize(size_t(totals.blocks) * kBlock);
         out_.entries.resize(totals.entries);
         out_.leaves = totals.leaves, out_.depth = totals.depth;
         fill(root, {0, 0, 0});
-        cancelled_.advance((kGatherWork - 1) * primitives_.size());
+        monitor_.advance((kGatherWork - 1) * primitives_.size());
     }
 
 private:
@@ -187,7 +187,7 @@ private:
                 places[i] = at;
                 at.node += child.nodes, at.block += child.blocks, at.entry += child.entries;
             }
-        if (root.end - root.begin >= kTaskGrain && cancelled_.poll()) return;
+        if (root.end - root.begin >= kTaskGrain && monitor_.poll()) return;
         WideNode node = empty_node();
         each(root, children, [&](uint32_t i) {
             const BinaryNode& child = *children.node[i];
@@ -241,15 +241,15 @@ private:
     }
 
     std::span<const BuildPrimitive> primitives_;
-    Cancellation& cancelled_;
+    BuildMonitor& monitor_;
     Float4 scale_;
     Bvh& out_;
 };
 
 }  // namespace
 
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, Cancellation& cancelled, Bvh& out) {
-    Gatherer(primitives, cancelled, out).run(root);
+void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out) {
+    Gatherer(primitives, monitor, out).run(root);
 }
 
 }  // namespace steradian

@@ -199,18 +199,18 @@ Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index) {
 
 Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
-                  Cancellation& cancelled) {
-    Bvh bvh = build_bvh(primitives, options, cancelled);
-    if (cancelled.poll()) return {};
+                  BuildMonitor& monitor) {
+    Bvh bvh = build_bvh(primitives, options, monitor);
+    if (monitor.poll()) return {};
     const uint64_t work = primitives.size() * kPackWork;
     CompactLevel compact;
     if (options.layout == BvhLayout::compact) {
         const auto triangle = [&](uint32_t id) { return triangle_of(geometries, parts, id); };
-        compact = make_compact(bvh, triangle, cancelled, work);
+        compact = make_compact(bvh, triangle, monitor, work);
     }
     Level level = fill_level(std::move(bvh), geometries, parts, first_instance);
     level.compact = std::move(compact);
-    if (options.layout == BvhLayout::full) cancelled.advance(work);
+    if (options.layout == BvhLayout::full) monitor.advance(work);
     return level;
 }
 

@@ -45,7 +45,7 @@ void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> g
 /// `first_instance`. Unfinished when cancelled. Reorders the primitives.
 Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
-                  Cancellation& cancelled);
+                  BuildMonitor& monitor);
 
 /// What build_level made in the full layout, for the same parts with other vertices, shapes and places of instances:
 /// boxes and orders are computed anew, from the leaves up, by all workers of the caller's arena.

@@ -226,10 +226,10 @@ private:
 };
 
 /// The moves that gain something in the tree as it is, the best first.
-std::vector<Move> find_moves(const Tree& tree, Cancellation& cancelled) {
+std::vector<Move> find_moves(const Tree& tree, BuildMonitor& monitor) {
     std::vector<Move> moves(tree.size());
     parallel_for(moves.size(), kGrain, [&](size_t begin, size_t end) {
-        if (cancelled.poll()) return;
+        if (monitor.poll()) return;
         for (size_t i = begin; i < end; ++i) moves[i] = tree.best_move(static_cast<uint32_t>(i));
     });
     moves.erase(std::remove_if(moves.begin(), moves.end(), [](const Move& m) { return !(m.gain > 0); }), moves.end());
@@ -240,20 +240,20 @@ std::vector<Move> find_moves(const Tree& tree, Cancellation& cancelled) {
 
 }  // namespace
 
-void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, Cancellation& cancelled,
+void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
               uint64_t work) {
     Tree tree(root, max_depth);
     uint64_t work_left = work;
     for (int pass = 0; pass < kPasses && tree.has_room(); ++pass) {
-        const std::vector<Move> moves = find_moves(tree, cancelled);
-        cancelled.advance(work / kPasses);
+        const std::vector<Move> moves = find_moves(tree, monitor);
+        monitor.advance(work / kPasses);
         work_left -= work / kPasses;
         for (size_t i = 0; i < moves.size(); ++i) {
-            if (i % kGrain == 0 && cancelled.poll()) break;
+            if (i % kGrain == 0 && monitor.poll()) break;
             tree.apply(moves[i]);
         }
     }
-    cancelled.advance(work_left);
+    monitor.advance(work_left);
     primitives = tree.store(primitives);
 }
 

@@ -10,7 +10,7 @@ namespace steradian {
 /// which keeps what it had; what belongs to none is left out. No leaf gets deeper than `max_depth`. The sum of the
 /// surfaces of all nodes never grows. Holds 48 bytes a node and a copy of the primitives meanwhile. Uses all workers;
 /// the result does not depend on their number. `work` is what to report, see BvhOptions.
-void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, Cancellation& cancelled,
+void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
               uint64_t work);
 
 }  // namespace steradian

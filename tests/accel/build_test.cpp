@@ -165,17 +165,17 @@ TEST(Build, Cancelled) {
 /// A function that waits for tasks, one of which polls, on the thread that is asking already.
 TEST(Build, CancellationMayBeAskedWhileItAsks) {
     int asked = 0, inner = 0;
-    Cancellation* self = nullptr;
+    BuildMonitor* self = nullptr;
     const std::function<bool()> function = [&] {
         inner += self->poll();
         return asked++ == 1;
     };
-    Cancellation cancellation(function);
-    self = &cancellation;
-    EXPECT_FALSE(cancellation.poll());
+    BuildMonitor monitor(function);
+    self = &monitor;
+    EXPECT_FALSE(monitor.poll());
     EXPECT_EQ(asked, 1);
-    EXPECT_TRUE(cancellation.poll());
-    EXPECT_TRUE(cancellation.poll());
+    EXPECT_TRUE(monitor.poll());
+    EXPECT_TRUE(monitor.poll());
     EXPECT_EQ(asked, 2);
     EXPECT_EQ(inner, 0);
 }

@@ -46,7 +46,7 @@ struct Chain {
         std::copy(nodes.begin(), nodes.end(), bvh.nodes.begin());
         for (const TriangleBlock& block : blocks)
             bvh.blocks.insert(bvh.blocks.end(), std::begin(block.prim), std::end(block.prim));
-        Cancellation never;
+        BuildMonitor never;
         const auto triangle = [&](uint32_t id) -> PackedTriangle {
             const uint32_t* corner = &mesh.indices[3 * size_t(id)];
             return {id, {mesh.positions[corner[0]], mesh.positions[corner[1]], mesh.positions[corner[2]]}};

@@ -60,8 +60,8 @@ Bvh split(const TestScene& scene) {
     BvhOptions options;
     options.builder = BvhBuilder::high_quality;
     options.split_boxes = true;
-    Cancellation cancelled;
-    return build_bvh(primitives, options, cancelled);
+    BuildMonitor monitor;
+    return build_bvh(primitives, options, monitor);
 }
 
 TEST(SplitBoxes, AreBoundedAndLoseNothing) {

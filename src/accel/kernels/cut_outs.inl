@@ -1,5 +1,4 @@
-// Any hits where some primitives are cut-outs. Included after kernel.inl, in files of its own: one more user of what is
-// in there would change what compilers inline into the other kernels.
+// What callers call where some primitives are cut-outs. Included after kernel.inl.
 
 void occluded_or_cut_out(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
     if (count == 1) {

@@ -2,44 +2,12 @@
 
 #if defined(__x86_64__)
 
-// From here on functions are compiled for AVX2.
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2,popcnt"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,bmi,bmi2,popcnt")
-#endif
+#include "accel/kernels/begin_avx2.inl"
 
-namespace steradian {
-namespace avx2 {
-namespace {
-#include "accel/kernels/simd_avx2.inl"
+namespace steradian::avx2 {
+#include "accel/kernels/layouts_cut_outs.inl"
+}  // namespace steradian::avx2
 
-#include "accel/kernels/compact_avx2.inl"
-}  // namespace
-namespace full {
-namespace {
-#include "accel/kernels/layout_full.inl"
-
-#include "accel/kernels/kernel.inl"
-}  // namespace
-#include "accel/kernels/cut_outs.inl"
-}  // namespace full
-namespace compact {
-namespace {
-#include "accel/kernels/layout_compact.inl"
-
-#include "accel/kernels/kernel.inl"
-}  // namespace
-#include "accel/kernels/cut_outs.inl"
-}  // namespace compact
-}  // namespace avx2
-}  // namespace steradian
-
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+#include "accel/kernels/end_isa.inl"
 
 #endif

@@ -1,27 +1,7 @@
 #include "accel/kernels/kernel_headers.h"
 
-namespace steradian {
-namespace scalar {
-namespace {
-#include "accel/kernels/simd_scalar.inl"
+#include "accel/kernels/begin_scalar.inl"
 
-#include "accel/kernels/compact_lanes.inl"
-}  // namespace
-namespace full {
-namespace {
-#include "accel/kernels/layout_full.inl"
-
-#include "accel/kernels/kernel.inl"
-}  // namespace
-#include "accel/kernels/cut_outs.inl"
-}  // namespace full
-namespace compact {
-namespace {
-#include "accel/kernels/layout_compact.inl"
-
-#include "accel/kernels/kernel.inl"
-}  // namespace
-#include "accel/kernels/cut_outs.inl"
-}  // namespace compact
-}  // namespace scalar
-}  // namespace steradian
+namespace steradian::scalar {
+#include "accel/kernels/layouts_cut_outs.inl"
+}  // namespace steradian::scalar

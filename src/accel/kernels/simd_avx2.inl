@@ -47,7 +47,6 @@ struct Double4 {
     __m256d v;
     static Double4 of(Float4 a) { return {_mm256_cvtps_pd(a.v)}; }
     static Double4 of_floats(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
-    static Double4 load(const double* p) { return {_mm256_load_pd(p)}; }
     static Double4 all(double x) { return {_mm256_set1_pd(x)}; }
     void store(double* p) const { _mm256_store_pd(p, v); }
 };

@@ -108,7 +108,6 @@ inline uint32_t at_most(Float16 a, Float16 b) { return _mm512_cmp_ps_mask(a.v, b
 struct Double8 {
     __m512d v;
     static Double8 of(Float8 a) { return {_mm512_cvtps_pd(a.v)}; }
-    static Double8 load(const double* p) { return {_mm512_load_pd(p)}; }
     static Double8 all(double x) { return {_mm512_set1_pd(x)}; }
     void store(double* p) const { _mm512_store_pd(p, v); }
 };

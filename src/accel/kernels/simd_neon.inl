@@ -33,7 +33,6 @@ struct Double4 {
     float64x2_t lo, hi;
     static Double4 of(Float4 a) { return {vcvt_f64_f32(vget_low_f32(a.v)), vcvt_high_f64_f32(a.v)}; }
     static Double4 of_floats(const float* p) { return of(Float4::load(p)); }
-    static Double4 load(const double* p) { return {vld1q_f64(p), vld1q_f64(p + 2)}; }
     static Double4 all(double x) { return {vdupq_n_f64(x), vdupq_n_f64(x)}; }
     void store(double* p) const { vst1q_f64(p, lo), vst1q_f64(p + 2, hi); }
 };

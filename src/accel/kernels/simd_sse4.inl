@@ -33,7 +33,6 @@ struct Double4 {
     __m128d lo, hi;
     static Double4 of(Float4 a) { return {_mm_cvtps_pd(a.v), _mm_cvtps_pd(_mm_movehl_ps(a.v, a.v))}; }
     static Double4 of_floats(const float* p) { return of(Float4::load(p)); }
-    static Double4 load(const double* p) { return {_mm_load_pd(p), _mm_load_pd(p + 2)}; }
     static Double4 all(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
     void store(double* p) const { _mm_store_pd(p, lo), _mm_store_pd(p + 2, hi); }
 };
