@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -153,6 +154,24 @@ void print_fireflies(const RenderOptions& o, const RenderStatistics& s) {
                                  replay_command(o.scene, o.settings, f));
 }
 
+/// Shows how the hierarchy gets on; render_failed when a signal came.
+Result<std::shared_ptr<const RenderScene>> prepare_scene(const RenderOptions& o, Scene scene,
+                                                         Diagnostics& diagnostics) {
+    using Clock = std::chrono::steady_clock;
+    ProgressMeter meter(o.quiet);
+    std::optional<Clock::time_point> begin;
+    PrepareHooks hooks;
+    hooks.cancelled = [] { return g_signal != 0; };
+    hooks.progress = [&](double fraction) {
+        const Clock::time_point now = Clock::now();
+        if (!begin) begin = now;
+        meter.show_build(fraction, std::chrono::duration<double>(now - *begin).count());
+    };
+    auto prepared = prepare(std::move(scene), o.execution, diagnostics, hooks);
+    meter.finish();
+    return prepared;
+}
+
 Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const RenderScene> scene,
                              const RenderSettings& settings, SignalScope& signals) {
     auto job = RenderJob::start(std::move(scene), settings, o.execution);
@@ -191,6 +210,12 @@ int finish(const RenderOptions& o, const RenderSettings& settings, const RenderR
     return signal != 0 ? 128 + signal : kDone;
 }
 
+/// By a signal.
+int stopped_early(const char* when) {
+    std::cerr << fmt::format("stopped {}: nothing was written\n", when);
+    return 128 + g_signal;
+}
+
 int run_render(const RenderOptions& given) {
     SignalScope signals;
     RenderOptions o = given;
@@ -212,16 +237,13 @@ int run_render(const RenderOptions& given) {
     Diagnostics diagnostics = std::move(loaded->diagnostics);
     if (auto status = check_scene_memory(estimate_memory(loaded->scene, *settings, o.execution)); !status)
         return report(status.error());
-    auto scene = prepare(std::move(loaded->scene), o.execution, diagnostics);
-    if (!scene) return report(scene.error());
+    auto scene = prepare_scene(o, std::move(loaded->scene), diagnostics);
+    if (!scene) return g_signal != 0 ? stopped_early("before the hierarchy was built") : report(scene.error());
     if (!o.quiet) report(diagnostics);
 
     const auto result = run_job(o, std::move(*scene), *settings, signals);
     if (!result) return report(result.error());
-    if (g_signal != 0 && result->max_samples == 0) {
-        std::cerr << "stopped before the first samples were done: nothing was written\n";
-        return 128 + g_signal;
-    }
+    if (g_signal != 0 && result->max_samples == 0) return stopped_early("before the first samples were done");
     return finish(o, *settings, *result, std::move(diagnostics));
 }
 

@@ -21,23 +21,42 @@ std::string format_quantity(double value) {
     return fmt::format("{:.3g}{}", value, prefixes[i]);
 }
 
-ProgressMeter::ProgressMeter(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+namespace {
+
+std::string time_left(double done, double seconds) {
+    return done > 0 ? "ETA " + format_duration(seconds * (1 - done) / done) : "ETA unknown";
+}
+
+}  // namespace
+
+ProgressMeter::ProgressMeter(bool quiet)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), next_(terminal_ ? 0 : 2) {}
 
 void ProgressMeter::show(const RenderProgress& p) {
-    if (quiet_ || p.samples_total == 0) return;
-    if (!terminal_ && p.seconds < next_plain_) return;
+    if (quiet_ || p.samples_total == 0 || p.seconds < next_) return;
     const double done = double(p.samples_done) / double(p.samples_total);
-    const double eta = done > 0 ? p.seconds * (1 - done) / done : 0;
-    const std::string line = fmt::format(
-        "{:5.1f} %  {} of {} samples  {} rays/s  {} elapsed  {}", 100 * done, format_quantity(double(p.samples_done)),
-        format_quantity(double(p.samples_total)), format_quantity(p.seconds > 0 ? double(p.rays) / p.seconds : 0),
-        format_duration(p.seconds), done > 0 ? "ETA " + format_duration(eta) : std::string("ETA unknown"));
+    print(fmt::format("{:5.1f} %  {} of {} samples  {} rays/s  {} elapsed  {}", 100 * done,
+                      format_quantity(double(p.samples_done)), format_quantity(double(p.samples_total)),
+                      format_quantity(p.seconds > 0 ? double(p.rays) / p.seconds : 0), format_duration(p.seconds),
+                      time_left(done, p.seconds)),
+          p.seconds);
+}
+
+void ProgressMeter::show_build(double fraction, double seconds) {
+    if (quiet_ || seconds < next_) return;
+    print(fmt::format("{:5.1f} %  of the hierarchy built  {} elapsed  {}", 100 * fraction, format_duration(seconds),
+                      time_left(fraction, seconds)),
+          seconds);
+}
+
+void ProgressMeter::print(const std::string& line, double seconds) {
     if (terminal_) {
         std::fprintf(stderr, "\r\x1b[K%s", line.c_str());
         line_open_ = true;
+        next_ = seconds + 0.1;
     } else {
         std::fprintf(stderr, "%s\n", line.c_str());
-        next_plain_ = p.seconds + std::clamp(p.seconds / 4, 5.0, 60.0);
+        next_ = seconds + std::clamp(seconds / 4, 5.0, 60.0);
     }
     std::fflush(stderr);
 }

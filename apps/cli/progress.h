@@ -1,4 +1,5 @@
-// Showing how a render gets on: one line that rewrites itself on a terminal, a plain line now and then elsewhere.
+// Showing how a build and a render get on: one line that rewrites itself on a terminal, a plain line now and then
+// elsewhere.
 #pragma once
 
 #include <string>
@@ -17,13 +18,17 @@ public:
     explicit ProgressMeter(bool quiet);
     /// Call as often as you like; it decides what is worth showing.
     void show(const RenderProgress& progress);
+    /// The same before the render: how much of the hierarchy is built, so many seconds after that began.
+    void show_build(double fraction, double seconds);
     /// Ends the line on a terminal.
     void finish();
 
 private:
+    void print(const std::string& line, double seconds);
+
     bool quiet_, terminal_;
     bool line_open_ = false;
-    double next_plain_ = 2;  ///< seconds; the distance grows with the length of the render
+    double next_ = 0;  ///< seconds of what is shown; for plain lines the distance grows with its length
 };
 
 }  // namespace steradian::cli

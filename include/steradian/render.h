@@ -19,10 +19,20 @@ namespace steradian {
 /// jobs may use it at once.
 class RenderScene;
 
+/// What prepare asks and tells its caller on the way; either may be missing. Called by one thread at a time, which need
+/// not be the caller's.
+struct PrepareHooks {
+    std::function<bool()> cancelled;  ///< asked now and then whether to stop
+    /// Told how much of the hierarchies is built: 0 when that begins, then more each time, and 1 when it is done.
+    std::function<void(double fraction)> progress;
+};
+
 /// Takes the scene over (its arrays are moved, not copied). Fails with bad_input when an id refers to nothing or a
-/// value makes no sense, with resources when there is not enough memory. Geometry that cannot be rendered (vertices
-/// that are not finite or beyond 1e15) is dropped with one counted warning in `diagnostics`.
-Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics);
+/// value makes no sense, with resources when there is not enough memory, with render_failed when cancelled. Geometry
+/// that cannot be rendered (vertices that are not finite or beyond 1e15) is dropped with one counted warning in
+/// `diagnostics`.
+Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics,
+                                                   const PrepareHooks& hooks = {});
 
 /// What rendering a scene takes, in bytes and within about a fifth, before any of it is taken.
 struct MemoryEstimate {

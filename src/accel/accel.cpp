@@ -168,6 +168,8 @@ Result<PlacedGeometry> place_instance(size_t index, const GeometryInstance& inst
     return *placed;
 }
 
+constexpr uint32_t kInstancesBetweenPolls = 16384;
+
 /// The upper level, over the primitives that are in place and the instances of everything else.
 Status build_upper(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                    const std::vector<bool>& upper, const AccelOptions& options, BuildMonitor& monitor, Built& built) {
@@ -195,6 +197,7 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
         if (kind_of(geometries[part.geometry]) == ItemKind::block) mostly = ItemKind::block;
     built.instances.reserve(instances.size());
     for (uint32_t i = 0; i < instances.size(); ++i) {
+        if (i % kInstancesBetweenPolls == 0 && monitor.poll()) return cancelled_error();
         const Box bounds = built.levels[instances[i].geometry].bounds;
         Result<PlacedGeometry> placed = place_instance(i, instances[i], bounds);
         if (!placed) return placed.error();

@@ -58,8 +58,14 @@ RenderSettings smallest_picture() {
 }
 
 Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Execution& execution,
-                                                           Diagnostics& diagnostics) {
+                                                           Diagnostics& diagnostics, const PrepareHooks& hooks) {
+    const auto cancelled = [&] { return hooks.cancelled && hooks.cancelled(); };
+    const auto cancelled_error = [] {
+        return make_error(ErrorCode::render_failed, "the preparation of the scene was cancelled");
+    };
+    if (cancelled()) return cancelled_error();
     std::string hash = scene_hash(scene);
+    if (cancelled()) return cancelled_error();
     sanitize(scene, diagnostics);
     if (auto status = validate(scene); !status) return std::move(status).error();
     if (scene.lights.empty()) diagnostics.warn("the scene has no lights: the picture will be black");
@@ -70,6 +76,7 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
 
     auto shading = make_shading_scene(std::move(scene), diagnostics);
     if (!shading) return std::move(shading).error();
+    if (cancelled()) return cancelled_error();
 
     AnalyticShapes analytic(shading->scene.shapes);
     const std::vector<Geometry> geometries = geometries_of(shading->scene, analytic);
@@ -82,6 +89,9 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     options.max_depth = execution.bvh_max_depth;
     options.layout = execution.bvh_layout;
     options.isa = execution.isa;
+    options.cancelled = hooks.cancelled;
+    options.progress = hooks.progress;
+    if (hooks.progress) hooks.progress(0);
     Result<Accel> accel = Error{};
     with_threads(execution.threads, [&] { accel = Accel::build(geometries, instances, options); });
     if (!accel) return std::move(accel).error();
@@ -92,10 +102,11 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
 
 }  // namespace
 
-Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics) {
+Result<std::shared_ptr<const RenderScene>> prepare(Scene scene, const Execution& execution, Diagnostics& diagnostics,
+                                                   const PrepareHooks& hooks) {
     const FloatMode mode;
     try {
-        return prepare_checked(std::move(scene), execution, diagnostics);
+        return prepare_checked(std::move(scene), execution, diagnostics, hooks);
     } catch (const std::bad_alloc&) {
         return make_error(ErrorCode::resources, "not enough memory to prepare the scene");
     } catch (const std::exception& e) {

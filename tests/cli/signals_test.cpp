@@ -1,5 +1,7 @@
 // What signals do to a render: it ends with what is done, at once, or goes on as if nothing had been.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <pty.h>
 
 #include <chrono>
 #include <thread>
@@ -75,6 +77,65 @@ TEST_F(Signals, ASecondSignalEndsTheRenderAtOnceAndLeavesTheFilesAlone) {
             EXPECT_TRUE(image.ok()) << image.error().str();
         }
     }
+}
+
+/// A square of n * n * 2 triangles as binary PLY.
+std::string grid_ply(uint32_t n) {
+    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string((n + 1) * (n + 1)) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                      std::to_string(2 * n * n) + "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const auto put = [&](auto x) { out.append(reinterpret_cast<const char*>(&x), sizeof(x)); };
+    for (uint32_t y = 0; y <= n; ++y)
+        for (uint32_t x = 0; x <= n; ++x) put(float(x)), put(float(y)), put(float(x * 7 % 11));
+    for (uint32_t y = 0; y < n; ++y)
+        for (uint32_t x = 0; x < n; ++x) {
+            const uint32_t a = y * (n + 1) + x, b = a + n + 1;
+            put(uint8_t(3)), put(a), put(a + 1), put(b + 1);
+            put(uint8_t(3)), put(a), put(b + 1), put(b);
+        }
+    return out;
+}
+
+/// A terminal for the program's messages, where every step is shown at once.
+struct Terminal {
+    int ours = -1;
+    static inline int programs = -1;  ///< its end; what runs in the child cannot capture
+
+    Terminal() { EXPECT_EQ(::openpty(&ours, &programs, nullptr, nullptr, nullptr), 0); }
+    ~Terminal() { ::close(ours), ::close(programs); }
+    /// Adds to `text` what is shown, until it contains `wanted` or nothing has come for so long.
+    bool shows(const std::string& wanted, std::string& text, Milliseconds patience) const {
+        char part[4096];
+        while (text.find(wanted) == std::string::npos) {
+            pollfd wait{ours, POLLIN, 0};
+            if (::poll(&wait, 1, int(patience.count())) <= 0) return false;
+            const ssize_t size = ::read(ours, part, sizeof(part));
+            if (size <= 0) return false;
+            text.append(part, size_t(size));
+        }
+        return true;
+    }
+};
+
+/// The build of this hierarchy takes seconds: the signal comes long before its end.
+TEST_F(Signals, TheBuildOfAHierarchyIsShownAndStops) {
+    spit(folder_.file("grid.ply"), grid_ply(700));
+    spit(folder_.file("a.exr"), "precious");
+    const Terminal terminal;
+    Process process(folder_, {"render", "grid.ply", "--bvh", "high-quality", "--threads", "1", "-o", "a.exr"},
+                    [] { ::dup2(Terminal::programs, 2); });
+    std::string text;
+    ASSERT_TRUE(terminal.shows("of the hierarchy built", text, std::chrono::minutes(2))) << text;
+    ASSERT_TRUE(terminal.shows("ETA 0:0", text, std::chrono::minutes(2))) << text;
+    process.send(SIGINT);
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_TRUE(
+        terminal.shows("stopped before the hierarchy was built: nothing was written", text, std::chrono::minutes(2)))
+        << text;
+    EXPECT_EQ(process.wait().code, 130) << text;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    EXPECT_EQ(slurp(folder_.file("a.exr")), "precious");
+    expect_files({"a.exr", "grid.ply"});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Scenes that are empty, degenerate or hostile: refused with a name for the fault, or rendered without a bad pixel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,6 +32,33 @@ Scene lit_plane() {
     s.lights = {PointLight{{0, 0, 3}, {1, 1, 1}}};
     s.cameras = {PerspectiveCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}};
     return s;
+}
+
+/// At the first question, at the last one, and at those in between.
+TEST(Prepare, AsksWhetherToStopAndSaysHowFarItIs) {
+    int questions = 0;
+    std::vector<double> told;
+    PrepareHooks hooks;
+    hooks.cancelled = [&] { return ++questions, false; };
+    hooks.progress = [&](double fraction) { told.push_back(fraction); };
+    Diagnostics diagnostics;
+    const Execution one_thread{1};
+    ASSERT_TRUE(prepare(lit_plane(), one_thread, diagnostics, hooks));
+    ASSERT_GE(told.size(), 2u);
+    EXPECT_EQ(told.front(), 0);
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GT(questions, 5);
+    for (int yes = 1; yes <= questions; ++yes) {
+        int asked = 0;
+        told.clear();
+        hooks.cancelled = [&] { return ++asked == yes; };
+        const auto prepared = prepare(lit_plane(), one_thread, diagnostics, hooks);
+        ASSERT_FALSE(prepared) << yes << " of " << questions;
+        EXPECT_EQ(prepared.error().code, ErrorCode::render_failed);
+        EXPECT_EQ(asked, yes) << "asked again after a yes";
+        for (const double fraction : told) EXPECT_LT(fraction, 1);
+    }
 }
 
 TEST(Prepare, AnEmptySceneIsBlack) {

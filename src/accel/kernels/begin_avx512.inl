@@ -1,7 +1,8 @@
 // From here to end_isa.inl functions are compiled for AVX-512. Its vectors are the first of them.
 
 #if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,popcnt"))), apply_to = function)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi,bmi2,popcnt"))), \
+                             apply_to = function)
 #else
 #pragma GCC push_options
 // GCC 12 takes its own headers' undefined registers for a mistake (bug 105593).

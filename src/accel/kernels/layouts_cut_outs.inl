@@ -1,5 +1,5 @@
-// Any hits where some primitives are cut-outs, for both layouts. Included in the namespace of an instruction set, in files
-// of its own: one more user of what is in kernel.inl would change what compilers inline into the other kernels.
+// Any hits where some primitives are cut-outs, for both layouts. Included in the namespace of an instruction set, in
+// files of its own: one more user of what is in kernel.inl would change what compilers inline into the other kernels.
 
 namespace full {
 namespace {
