@@ -51,6 +51,9 @@ struct Accel::Data {
     World world;
     const Kernels* kernels = nullptr;
     AccelStatistics statistics;
+
+    /// Everything but how long the build took.
+    void count_again(std::span<const Geometry> geometries);
 };
 
 namespace {
@@ -244,11 +247,9 @@ Error other_scene(const std::string& what) {
     return {ErrorCode::bad_input, what + " is not what the hierarchy was built over; build it anew", {}, {}, {}};
 }
 
-/// That it can be refitted, and that there is the same of everything; not whether it is sound.
+/// That there is the same of everything; not whether it is sound.
 Status check_same(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                   const Built& built) {
-    if (built.layout == BvhLayout::compact)
-        return make_error(ErrorCode::usage, "a hierarchy in the compact layout cannot be refitted; build it anew");
     if (geometries.size() != built.sizes.size())
         return other_scene("a number of " + std::to_string(geometries.size()) + " geometries");
     if (instances.size() != built.instances.size())
@@ -288,6 +289,13 @@ Result<std::vector<PlacedGeometry>> place_again(std::span<const Geometry> geomet
 
 }  // namespace
 
+void Accel::Data::count_again(std::span<const Geometry> geometries) {
+    const double build_seconds = statistics.build_seconds;
+    statistics = count(geometries, built);
+    statistics.bytes += sizeof(Data);
+    statistics.build_seconds = build_seconds;
+}
+
 Accel::Accel(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
@@ -313,8 +321,7 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         if (Status status = build_upper(geometries, instances, upper, options, monitor, built); !status)
             return status.error();
         built.cut_outs = find_cut_outs(instances);
-        data->statistics = count(geometries, built);
-        data->statistics.bytes += sizeof(Data);
+        data->count_again(geometries);
         data->world = data->built.world();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - started;
         data->statistics.build_seconds = took.count();
@@ -335,15 +342,23 @@ Status Accel::refit(std::span<const Geometry> geometries, std::span<const Geomet
         std::vector<LevelPart> parts;
         for (const TrianglePart& part : built.parts)
             parts.push_back({part.first, part.instance, built.instances[part.instance].geometry});
+        const auto whole = [](uint32_t geometry) { return LevelPart{0, kNoHit, geometry}; };
+        std::vector<CompactLevel> repacked(geometries.size());
+        for (uint32_t i = 0; i < geometries.size(); ++i) {
+            const LevelPart part = whole(i);
+            repacked[i] = repack_level(built.levels[i], geometries, {&part, 1});
+        }
+        CompactLevel repacked_upper = repack_level(built.upper, geometries, parts);
         // From here on nothing fails.
         std::copy(placed->begin(), placed->end(), built.instances.begin());
         for (uint32_t i = 0; i < geometries.size(); ++i) {
-            built.shapes[i] = shapes_of(geometries[i]);
-            const LevelPart whole{0, kNoHit, i};
-            refit_level(built.levels[i], geometries, {&whole, 1}, {});
+            const LevelPart part = whole(i);
+            refit_level(built.levels[i], std::move(repacked[i]), geometries, {&part, 1}, {});
+            built.shapes[i] = shapes_of(geometries[i]), built.views[i] = built.levels[i].view();
         }
-        refit_level(built.upper, geometries, parts, built.instances);
-        data_->statistics.cost = cost_of(built);
+        refit_level(built.upper, std::move(repacked_upper), geometries, parts, built.instances);
+        data_->world = built.world();
+        data_->count_again(geometries);
         return Ok{};
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::resources, "not enough memory to refit the hierarchy", {}, {}, {}};

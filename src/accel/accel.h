@@ -92,11 +92,11 @@ public:
     /// new build, and the answers are exactly those of a new build; but the further things move against each other, the
     /// more boxes overlap, and the slower rays become (statistics().cost). The spans replace those given to build.
     ///
-    /// On failure nothing has changed. `usage` for a hierarchy in the compact layout, which is not made for this: build
-    /// it anew. bad_input for what build refuses; for other numbers of geometries, primitives or
+    /// On failure nothing has changed. bad_input for what build refuses; for other numbers of geometries, primitives or
     /// instances, other kinds of geometries or other geometries in the instances; and for a transform of a geometry
     /// that is in one place only and was not transformed when the hierarchy was built. `resources` when memory runs
-    /// out. Not while anybody else uses the Accel. Uses the workers of the caller's arena.
+    /// out: the compact layout is packed anew, where the old one still is. Not while anybody else uses the Accel. Uses
+    /// the workers of the caller's arena.
     Status refit(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances);
 
     Accel(Accel&&) noexcept;

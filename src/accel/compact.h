@@ -22,9 +22,13 @@ constexpr uint32_t max_items(BvhLayout layout) {
     return layout == BvhLayout::compact ? kMaxCompactItems : ChildRef::kMaxItems - 1;
 }
 
-/// `triangle` gives the corners of an id. Lets go of the nodes and blocks of `bvh`. `work` is what to report in all.
+/// The corners of an id.
+using TriangleOf = std::function<PackedTriangle(uint32_t id)>;
+
+/// Lets go of the nodes and blocks of `bvh`. `work` is what to report in all.
 /// Unfinished when cancelled.
-CompactLevel make_compact(Bvh& bvh, const std::function<PackedTriangle(uint32_t id)>& triangle, BuildMonitor& monitor,
-                          uint64_t work);
+CompactLevel make_compact(Bvh& bvh, const TriangleOf& triangle, BuildMonitor& monitor, uint64_t work);
+/// The same nodes over blocks of the same triangles with the vertices that they have now; boxes are those of before.
+CompactLevel repack(const CompactLevel& level, const TriangleOf& triangle);
 
 }  // namespace steradian

@@ -90,6 +90,14 @@ private:
     }
 };
 
+/// body(block) for every block of the run that begins there.
+template <class Body>
+void for_each_block(const uint64_t* first, const Body& body) {
+    CompactBlock block(first);
+    for (; !block.last(); block = CompactBlock(block.unit + block.units())) body(block);
+    body(block);
+}
+
 struct PackedTriangle {
     uint32_t id;
     Vec3 corner[3];

@@ -214,6 +214,10 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
     return level;
 }
 
+CompactLevel repack_level(const Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts) {
+    return repack(level.compact, [&](uint32_t id) { return triangle_of(geometries, parts, id); });
+}
+
 Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
                  uint32_t first_instance) {
     Level level;

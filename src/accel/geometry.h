@@ -47,10 +47,13 @@ Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   BuildMonitor& monitor);
 
-/// What build_level made in the full layout, for the same parts with other vertices, shapes and places of instances:
-/// boxes and orders are computed anew, from the leaves up, by all workers of the caller's arena.
-void refit_level(Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                 std::span<const PlacedGeometry> instances);
+/// The part of a refit that may fail, and changes nothing: in the compact layout, where vertices that move take another
+/// number of bytes, blocks for the same parts with other vertices, over the nodes of before. Empty in the full layout.
+CompactLevel repack_level(const Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts);
+/// What build_level made, for the same parts with other vertices, shapes and places of instances, once they are
+/// repacked: boxes and orders are computed anew, from the leaves up, by all workers of the caller's arena.
+void refit_level(Level& level, CompactLevel repacked, std::span<const Geometry> geometries,
+                 std::span<const LevelPart> parts, std::span<const PlacedGeometry> instances);
 
 /// The visits of nodes and tests of blocks, shapes and instances that a ray is expected to need which meets the bounds,
 /// with the costs of the hierarchies that the instances of the upper level lead to.

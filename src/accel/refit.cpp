@@ -9,15 +9,73 @@
 namespace steradian {
 namespace {
 
+// --- What differs between the layouts. -------------------------------------------------------------------------
+
+uint32_t child_count(const CompactNode& node) { return static_cast<uint32_t>(std::popcount(node.present())); }
+Box child_box(const CompactNode& node, uint32_t i) { return node.box(i); }
+
+/// The boxes of all children, and their order.
+void set_children(WideNode& node, const Box boxes[], uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) set_child_box(node, i, boxes[i]);
+    set_child_order(node, count);
+}
+void set_children(CompactNode& node, const Box boxes[], uint32_t count) {
+    WideNode wide{};
+    std::copy_n(node.child, kWidth, wide.child);
+    set_children(wide, boxes, count);
+    node = quantise(wide, count);
+}
+
+/// Of whatever has corner(which, lane); lanes without a triangle repeat another one.
+template <class Block>
+void extend_by(const Block& block, Box& box) {
+    for (int corner = 0; corner < 3; ++corner)
+        for (uint32_t lane = 0; lane < kBlock; ++lane) box.extend(block.corner(static_cast<uint32_t>(corner), lane));
+}
+Box block_bounds(const LargeArray<TriangleBlock>& blocks, uint32_t leaf) {
+    Box box;
+    for (const TriangleBlock& block : std::span(blocks).subspan(ChildRef::first(leaf), ChildRef::count(leaf)))
+        extend_by(block, box);
+    return box;
+}
+Box block_bounds(const LargeArray<uint64_t>& blocks, uint32_t leaf) {
+    Box box;
+    for_each_block(&blocks[CompactRef::offset(leaf)], [&](const CompactBlock& block) { extend_by(block, box); });
+    return box;
+}
+
+/// Blocks, shapes or instances of a leaf.
+uint32_t items_of(const LargeArray<TriangleBlock>&, uint32_t leaf) { return ChildRef::count(leaf); }
+uint32_t items_of(const LargeArray<uint64_t>& blocks, uint32_t leaf) {
+    if (ChildRef::kind(leaf) != ItemKind::block) return ChildRef::count(leaf);
+    uint32_t count = 0;
+    for_each_block(&blocks[CompactRef::offset(leaf)], [&](const CompactBlock&) { ++count; });
+    return count;
+}
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <class Node, class Block>
 class Refitter {
 public:
-    Refitter(Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
+    Refitter(LargeArray<Node>& nodes, const LargeArray<Block>& blocks, std::vector<LeafEntry>& entries,
+             std::span<const Geometry> geometries, std::span<const LevelPart> parts,
              std::span<const PlacedGeometry> instances)
-        : level_(level), geometries_(geometries), parts_(parts), instances_(instances) {}
+        : nodes_(nodes),
+          blocks_(blocks),
+          entries_(entries),
+          geometries_(geometries),
+          parts_(parts),
+          instances_(instances) {}
+
+    Box run() { return refit(0, static_cast<uint32_t>(nodes_.size())); }
+
+private:
+    static constexpr uint32_t kTaskNodes = 512;
 
     /// The nodes of a subtree are [node, end), with the root of every subtree before what is below it.
     Box refit(uint32_t index, uint32_t end) {
-        WideNode& node = level_.nodes[index];
+        Node& node = nodes_[index];
         const uint32_t children = child_count(node);
         Box boxes[kWidth];
         const auto one = [&](size_t i, size_t) {
@@ -28,17 +86,14 @@ public:
             for (uint32_t i = 0; i < children; ++i) one(i, i + 1);
         else
             parallel_for(children, 1, one);
+        set_children(node, boxes, children);
         Box all;
-        for (uint32_t i = 0; i < children; ++i) set_child_box(node, i, boxes[i]), all.extend(boxes[i]);
-        set_child_order(node, children);
+        for (uint32_t i = 0; i < children; ++i) all.extend(boxes[i]);
         return all;
     }
 
-private:
-    static constexpr uint32_t kTaskNodes = 512;
-
     /// Where the next subtree begins, or the parent's ends.
-    static uint32_t end_of(const WideNode& parent, uint32_t child, uint32_t end) {
+    static uint32_t end_of(const Node& parent, uint32_t child, uint32_t end) {
         for (const uint32_t other : parent.child)
             if (!ChildRef::is_leaf(other) && other > child) end = std::min(end, other);
         return end;
@@ -48,54 +103,25 @@ private:
         return geometries_[shape.instance == kNoHit ? parts_[0].geometry : instances_[shape.instance].geometry];
     }
 
-    /// Every item is in one leaf.
+    /// Shapes and instances are in one leaf each.
     Box leaf_box(uint32_t leaf) {
-        const uint32_t first = ChildRef::first(leaf);
+        if (ChildRef::kind(leaf) == ItemKind::block) return block_bounds(blocks_, leaf);
         Box box;
-        for (uint32_t i = first; i < first + ChildRef::count(leaf); ++i) {
-            if (ChildRef::kind(leaf) == ItemKind::block) {
-                const TriangleBlock& block = level_.blocks[i];
-                for (int corner = 0; corner < 3; ++corner)
-                    for (uint32_t lane = 0; lane < kBlock; ++lane) box.extend(block.corner(corner, lane));
-            } else {
-                LeafEntry& entry = level_.entries[i];
-                const bool shape = ChildRef::kind(leaf) == ItemKind::shape;
-                if (shape) entry.own = shape_bounds(geometry_of(entry), entry.prim);
-                box.extend(shape ? entry.own : instances_[entry.instance].world);
-            }
+        for (LeafEntry& entry : std::span(entries_).subspan(ChildRef::first(leaf), ChildRef::count(leaf))) {
+            const bool shape = ChildRef::kind(leaf) == ItemKind::shape;
+            if (shape) entry.own = shape_bounds(geometry_of(entry), entry.prim);
+            box.extend(shape ? entry.own : instances_[entry.instance].world);
         }
         return box;
     }
 
-    Level& level_;
+    LargeArray<Node>& nodes_;
+    const LargeArray<Block>& blocks_;
+    std::vector<LeafEntry>& entries_;
     std::span<const Geometry> geometries_;
     std::span<const LevelPart> parts_;
     std::span<const PlacedGeometry> instances_;
 };
-
-}  // namespace
-
-void refit_level(Level& level, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                 std::span<const PlacedGeometry> instances) {
-    if (level.nodes.empty()) return;
-    place_vertices(level.blocks, geometries, parts);
-    level.bounds = Refitter(level, geometries, parts, instances).refit(0, static_cast<uint32_t>(level.nodes.size()));
-}
-
-namespace {
-
-uint32_t child_count(const CompactNode& node) { return static_cast<uint32_t>(std::popcount(node.present())); }
-Box child_box(const CompactNode& node, uint32_t i) { return node.box(i); }
-
-/// Blocks, shapes or instances of a leaf.
-uint32_t items_of(const LargeArray<TriangleBlock>&, uint32_t leaf) { return ChildRef::count(leaf); }
-uint32_t items_of(const LargeArray<uint64_t>& blocks, uint32_t leaf) {
-    if (ChildRef::kind(leaf) != ItemKind::block) return ChildRef::count(leaf);
-    uint32_t count = 1;
-    const uint64_t* at = &blocks[CompactRef::offset(leaf)];
-    for (CompactBlock block(at); !block.last(); block = CompactBlock(block.unit + block.units())) ++count;
-    return count;
-}
 
 /// In chunks that do not depend on the workers, added in order.
 template <class Node, class Block>
@@ -127,6 +153,18 @@ double cost_of(const Level& level, const LargeArray<Node>& nodes, const LargeArr
 }
 
 }  // namespace
+
+void refit_level(Level& level, CompactLevel repacked, std::span<const Geometry> geometries,
+                 std::span<const LevelPart> parts, std::span<const PlacedGeometry> instances) {
+    level.compact = std::move(repacked);
+    if (!level.compact.nodes.empty()) {
+        level.bounds =
+            Refitter(level.compact.nodes, level.compact.blocks, level.entries, geometries, parts, instances).run();
+    } else if (!level.nodes.empty()) {
+        place_vertices(level.blocks, geometries, parts);
+        level.bounds = Refitter(level.nodes, level.blocks, level.entries, geometries, parts, instances).run();
+    }
+}
 
 double expected_cost(const Level& level, std::span<const double> instance_costs) {
     if (!level.compact.nodes.empty()) return cost_of(level, level.compact.nodes, level.compact.blocks, instance_costs);

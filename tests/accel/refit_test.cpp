@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "accel/kernels/kernels.h"
+#include "base/names.h"
 #include "base/parallel.h"
 #include "math/transform.h"
 #include "scenes.h"
@@ -11,6 +12,8 @@
 
 namespace steradian::test {
 namespace {
+
+constexpr BvhLayout kLayouts[] = {BvhLayout::full, BvhLayout::compact};
 
 /// Moves every vertex and parameter by up to `amount` of the scene's size, and every transform but identities.
 void deform(TestScene& scene, double amount, uint64_t seed) {
@@ -59,15 +62,16 @@ TEST(Refit, EveryBitOfEveryHitOnEveryKernel) {
     size_t turn = 0;
     for (TestScene& scene : hard_scenes()) {
         std::vector<Accel> built;
-        for (const Isa isa : supported_isas()) {
-            AccelOptions options;
-            options.isa = isa;
-            options.builder = BvhBuilder(turn++ % 3);
-            if (turn % 4 == 0) options.max_depth = 2;
-            Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-            ASSERT_TRUE(accel) << scene.name;
-            built.push_back(std::move(*accel));
-        }
+        for (const Isa isa : supported_isas())
+            for (const BvhLayout layout : kLayouts) {
+                AccelOptions options;
+                options.isa = isa, options.layout = layout;
+                options.builder = BvhBuilder(turn++ % names_of<BvhBuilder>().size());
+                if (turn % 5 == 0) options.max_depth = 2;
+                Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_TRUE(accel) << scene.name;
+                built.push_back(std::move(*accel));
+            }
         // Little, so much that nothing is where it was, and back to little.
         for (const double amount : {0.01, 1.0, 0.1}) {
             deform(scene, amount, 77 + turn);
@@ -105,7 +109,6 @@ TestScene soup_of(int count, uint64_t seed) {
 TEST(Refit, LargeMeshesOnAnyNumberOfThreads) {
     const ThreadLimit limit(5);
     TestScene scene = soup_of(60'000, 4);
-    double cost = 0;
     std::vector<Hit> expected;
     std::vector<std::vector<Vec3>> frames;
     for (int frame = 0; frame < 3; ++frame) deform(scene, 0.05, 9 + frame), frames.push_back(scene.meshes[0].positions);
@@ -114,26 +117,38 @@ TEST(Refit, LargeMeshesOnAnyNumberOfThreads) {
     ASSERT_TRUE(fresh);
     expected.resize(rays.size());
     fresh->intersect(rays, expected);
-    for (const uint32_t threads : {1u, 2u, 5u})
-        with_threads(threads, [&] {
-            scene.meshes[0].positions = frames[0];
-            Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
-            ASSERT_TRUE(accel);
-            for (const auto& frame : frames) {
-                scene.meshes[0].positions = frame;
-                ASSERT_TRUE(accel->refit(scene.geometries(), scene.instances));
-            }
-            expect_answers(*accel, rays, expected, "soup");
-            // Sums in fixed chunks: the same to the bit.
-            if (cost == 0) cost = accel->statistics().cost;
-            EXPECT_EQ(accel->statistics().cost, cost);
-        });
+    for (const BvhLayout layout : kLayouts) {
+        AccelOptions options;
+        options.layout = layout;
+        double cost = 0;
+        for (const uint32_t threads : {1u, 2u, 5u})
+            with_threads(threads, [&] {
+                scene.meshes[0].positions = frames[0];
+                Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+                ASSERT_TRUE(accel);
+                for (const auto& frame : frames) {
+                    scene.meshes[0].positions = frame;
+                    ASSERT_TRUE(accel->refit(scene.geometries(), scene.instances));
+                }
+                expect_answers(*accel, rays, expected, "soup");
+                // Sums in fixed chunks: the same to the bit.
+                if (cost == 0) cost = accel->statistics().cost;
+                EXPECT_EQ(accel->statistics().cost, cost);
+            });
+    }
 }
 
+class RefitLayout : public testing::TestWithParam<BvhLayout> {
+protected:
+    RefitLayout() { options_.layout = GetParam(); }
+    AccelOptions options_;
+};
+INSTANTIATE_TEST_SUITE_P(Refit, RefitLayout, testing::ValuesIn(kLayouts));
+
 /// A refit with nothing moved gives the boxes of the build; what moves apart costs more than a new build.
-TEST(Refit, CostSaysWhatItDidToTheBoxes) {
+TEST_P(RefitLayout, CostSaysWhatItDidToTheBoxes) {
     TestScene scene = soup_of(20'000, 5);
-    Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
+    Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options_);
     ASSERT_TRUE(accel);
     const double built = accel->statistics().cost;
     EXPECT_GT(built, 1);
@@ -144,7 +159,7 @@ TEST(Refit, CostSaysWhatItDidToTheBoxes) {
         TestScene moved = soup_of(20'000, 5);
         deform(moved, amount, 6);
         ASSERT_TRUE(accel->refit(moved.geometries(), moved.instances));
-        const Result<Accel> fresh = Accel::build(moved.geometries(), moved.instances);
+        const Result<Accel> fresh = Accel::build(moved.geometries(), moved.instances, options_);
         ASSERT_TRUE(fresh);
         EXPECT_GT(accel->statistics().cost, before);
         EXPECT_GT(accel->statistics().cost, fresh->statistics().cost) << amount;
@@ -167,14 +182,14 @@ TEST(Refit, CostByHand) {
     EXPECT_EQ(Accel::build({&g, 1}, twice)->statistics().cost, 1 + 2 * (1 + 2));
 }
 
-TEST(Refit, RefusesWhatIsNotTheSameAndChangesNothing) {
+TEST_P(RefitLayout, RefusesWhatIsNotTheSameAndChangesNothing) {
     TestScene scene("some of everything");
     scene.meshes.push_back(icosphere(2));
     scene.meshes.push_back(cube());
     scene.spheres.push_back({{{3, 0, 0}, 1}, {{5, 0, 0}, 1}});
     scene.instances = {{0, {}}, {2, {}}, {1, translation(0, 3, 0)}, {1, translation(0, -3, 0)}};
     scene.finish(1);
-    Result<Accel> accel = Accel::build(scene.geometries(), scene.instances);
+    Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options_);
     ASSERT_TRUE(accel);
     const std::vector<Ray> rays = hard_rays(scene, 2000, 2);
     std::vector<Hit> expected(rays.size());
@@ -225,26 +240,49 @@ TEST(Refit, RefusesWhatIsNotTheSameAndChangesNothing) {
     EXPECT_TRUE(accel->refit(moved.geometries(), instances));
 }
 
-TEST(Refit, IsNotForTheCompactLayout) {
-    TestScene scene("cube");
-    scene.meshes.push_back(cube());
+/// Triangles that share corners by where they are, and not by index: the compact layout takes more bytes once they have
+/// moved apart, and as many as before when they come back.
+TEST(Refit, VerticesThatMoveApartAndBack) {
+    TestScene scene("sheet");
+    TriangleMesh sheet;
+    for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 60; ++x) {
+            const auto at = [](int i, int j) { return Vec3(float(i), float(j), float(i * j % 3)); };
+            sheet.add(at(x, y), at(x + 1, y), at(x + 1, y + 1));
+            sheet.add(at(x, y), at(x + 1, y + 1), at(x, y + 1));
+        }
+    scene.meshes.push_back(std::move(sheet));
     scene.finish(1);
     AccelOptions options;
     options.layout = BvhLayout::compact;
     Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
     ASSERT_TRUE(accel);
+    const AccelStatistics built = accel->statistics();
+    const std::vector<Vec3> positions = scene.meshes[0].positions;
+    deform(scene, 0.01, 3);
+    ASSERT_TRUE(accel->refit(scene.geometries(), scene.instances));
+    EXPECT_GT(accel->statistics().bytes, built.bytes * 5 / 4);
+    EXPECT_EQ(accel->statistics().build_seconds, built.build_seconds);
+    const BruteForce brute(scene);
     const std::vector<Ray> rays = hard_rays(scene, 500, 2);
     std::vector<Hit> expected(rays.size());
-    accel->intersect(rays, expected);
-    const Status status = accel->refit(scene.geometries(), scene.instances);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().code, ErrorCode::usage);
-    EXPECT_EQ(status.error().message, "a hierarchy in the compact layout cannot be refitted; build it anew");
-    expect_answers(*accel, rays, expected, "after the refusal");
-    // With nothing in it as well.
-    Result<Accel> empty = Accel::build({}, {}, options);
-    ASSERT_TRUE(empty);
-    EXPECT_FALSE(empty->refit({}, {}));
+    for (size_t i = 0; i < rays.size(); ++i) expected[i] = brute.first_hit(rays[i]);
+    expect_answers(*accel, rays, expected, "moved apart");
+    scene.meshes[0].positions = positions;
+    ASSERT_TRUE(accel->refit(scene.geometries(), scene.instances));
+    EXPECT_EQ(accel->statistics().bytes, built.bytes);
+    EXPECT_EQ(accel->statistics().cost, built.cost);
+}
+
+TEST(Refit, OfNothing) {
+    for (const BvhLayout layout : kLayouts) {
+        AccelOptions options;
+        options.layout = layout;
+        Result<Accel> accel = Accel::build({}, {}, options);
+        ASSERT_TRUE(accel);
+        EXPECT_TRUE(accel->refit({}, {}));
+        EXPECT_FALSE(accel->intersect({{0, 0, 0}, 0, {1, 0, 0}, kInfinity}).found());
+    }
 }
 
 }  // namespace
