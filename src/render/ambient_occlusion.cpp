@@ -11,6 +11,9 @@ public:
     using WavefrontIntegrator::WavefrontIntegrator;
 
 private:
+    /// They go in all directions.
+    RayKind shadow_ray_kind(uint32_t) const noexcept override { return RayKind::incoherent; }
+
     void bounce(uint32_t) noexcept override {
         each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) {
             if (!hit.found()) return;
@@ -22,7 +25,7 @@ private:
             if (!(dot(wi, from.ng) > 0)) return;
             Ray probe = spawn_ray(from, wi);
             if (c_.settings.ao_distance > 0) probe.tmax = c_.settings.ao_distance;
-            connect(id, probe, {1, 1, 1});
+            connect(id, 0, probe, {1, 1, 1});
         });
     }
 };

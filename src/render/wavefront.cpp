@@ -5,6 +5,9 @@ namespace {
 
 constexpr uint32_t kBatchPaths = 4096;
 constexpr uint32_t kBatchShadowRays = 16384;
+/// Traced at a time: a cancelled job must not wait for thousands of rays, which in a hostile scene take milliseconds
+/// each.
+constexpr size_t kSlice = 512;
 
 }  // namespace
 
@@ -14,11 +17,13 @@ uint32_t WavefrontIntegrator::capacity(uint32_t max_tile_pixels) noexcept {
 
 uint64_t WavefrontIntegrator::bytes(uint32_t max_tile_pixels) noexcept {
     constexpr uint64_t path = sizeof(Path) + 2 * (sizeof(uint32_t) + sizeof(Ray)) + sizeof(Hit);
-    return capacity(max_tile_pixels) * path + kBatchShadowRays * (sizeof(Ray) + sizeof(Connection) + sizeof(uint8_t));
+    constexpr uint64_t shadow_ray = sizeof(Ray) + sizeof(Connection) + sizeof(uint32_t) + sizeof(uint8_t);
+    return max_tile_pixels * sizeof(uint32_t) + capacity(max_tile_pixels) * path + kBatchShadowRays * shadow_ray;
 }
 
 WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
     : c_(context), shading_(context.scene.shading), capacity_(capacity(max_tile_pixels)) {
+    pixels_.reserve(max_tile_pixels);
     paths_.resize(capacity_);
     active_.reserve(capacity_);
     rays_.reserve(capacity_);
@@ -27,6 +32,7 @@ WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t 
     hits_.resize(capacity_);
     shadow_rays_.reserve(kBatchShadowRays);
     connections_.reserve(kBatchShadowRays);
+    shadow_order_.resize(kBatchShadowRays);
     occluded_.resize(kBatchShadowRays);
 }
 
@@ -34,6 +40,7 @@ bool WavefrontIntegrator::render(const WorkUnit& unit, std::span<RgbSum> sums, C
     counters_ = &counters;
     const uint32_t pixels = unit.tile.pixels();
     const uint32_t step = std::max(1u, capacity_ / pixels);
+    order_pixels(unit.tile);
     for (uint32_t done = 0; done < unit.samples; done += step) {
         const uint32_t samples = std::min(step, unit.samples - done);
         generate(unit, unit.first_sample + done, samples);
@@ -46,17 +53,30 @@ bool WavefrontIntegrator::render(const WorkUnit& unit, std::span<RgbSum> sums, C
     return true;
 }
 
-/// Camera rays, sample by sample and within a sample pixel by pixel.
+/// In squares of four by four, made of four of two by two each: pixels that follow each other are close, so that their
+/// rays go much the same way.
+void WavefrontIntegrator::order_pixels(const TileRect& tile) noexcept {
+    pixels_.clear();
+    const uint32_t width = tile.width(), height = tile.pixels() / width;
+    for (uint32_t y0 = 0; y0 < height; y0 += 4)
+        for (uint32_t x0 = 0; x0 < width; x0 += 4)
+            for (uint32_t i = 0; i < 16; ++i) {
+                const uint32_t x = x0 + (i & 1) + (i >> 1 & 2), y = y0 + (i >> 1 & 1) + (i >> 2 & 2);
+                if (x < width && y < height) pixels_.push_back(y * width + x);
+            }
+}
+
+/// Camera rays, pixel by pixel and all samples of a pixel together.
 void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept {
     active_.clear();
     rays_.clear();
     const uint32_t pixels = unit.tile.pixels();
     for (uint32_t i = 0; i < pixels * samples; ++i) {
         Path& path = paths_[i];
-        path.pixel = i % pixels;
+        path.pixel = pixels_[i / samples];
         path.x = unit.tile.x0 + path.pixel % unit.tile.width();
         path.y = unit.tile.y0 + path.pixel / unit.tile.width();
-        path.key = c_.sampler.key(path.x, path.y, first_sample + i / pixels);
+        path.key = c_.sampler.key(path.x, path.y, first_sample + i % samples);
         const FilterSample position = c_.filter.sample(c_.sampler.get_2d(path.key, kFilterDimension));
         path.weight = position.weight;
         path.throughput = {1, 1, 1};
@@ -73,10 +93,11 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
 /// One bounce of all paths that are still on their way.
 void WavefrontIntegrator::advance(uint32_t depth) noexcept {
     const std::span<Hit> hits(hits_.data(), rays_.size());
-    in_slices(rays_, [&](std::span<const Ray> rays, size_t first) {
-        const RayKind kind = depth == 0 ? RayKind::coherent : RayKind::incoherent;
-        c_.scene.accel.intersect(rays, hits.subspan(first, rays.size()), kind);
+    const RayKind kind = depth == 0 ? RayKind::coherent : RayKind::incoherent;
+    in_slices(rays_.size(), [&](size_t first, size_t count) {
+        c_.scene.accel.intersect(std::span(rays_).subspan(first, count), hits.subspan(first, count), kind);
     });
+    depth_ = depth;
     next_active_.clear();
     next_rays_.clear();
     bounce(depth);
@@ -107,16 +128,31 @@ void WavefrontIntegrator::continue_along(uint32_t id, const Ray& ray) noexcept {
     next_active_.push_back(id);
 }
 
-void WavefrontIntegrator::connect(uint32_t id, const Ray& shadow_ray, Rgb contribution) noexcept {
+void WavefrontIntegrator::connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept {
     if (shadow_rays_.size() == kBatchShadowRays) trace_shadow_rays();
     shadow_rays_.push_back(shadow_ray);
-    connections_.push_back({id, contribution});
+    connections_.push_back({id, group, contribution});
+}
+
+/// Those of one group after each other, each in the order in which they were given. Of many groups some share a place.
+void WavefrontIntegrator::order_shadow_rays() noexcept {
+    constexpr uint32_t kGroups = 64;
+    uint32_t place[kGroups + 1] = {};
+    for (const Connection& c : connections_) ++place[c.group % kGroups + 1];
+    for (uint32_t i = 1; i < kGroups; ++i) place[i] += place[i - 1];
+    for (uint32_t i = 0; i < connections_.size(); ++i) shadow_order_[place[connections_[i].group % kGroups]++] = i;
 }
 
 void WavefrontIntegrator::trace_shadow_rays() noexcept {
     const std::span<uint8_t> occluded(occluded_.data(), shadow_rays_.size());
-    in_slices(shadow_rays_, [&](std::span<const Ray> rays, size_t first) {
-        c_.scene.accel.occluded(rays, occluded.subspan(first, rays.size()), RayKind::coherent);
+    order_shadow_rays();
+    in_slices(shadow_rays_.size(), [&](size_t first, size_t count) {
+        const uint32_t* order = shadow_order_.data() + first;
+        Ray rays[kSlice];
+        uint8_t result[kSlice];
+        for (size_t i = 0; i < count; ++i) rays[i] = shadow_rays_[order[i]];
+        c_.scene.accel.occluded({rays, count}, {result, count}, shadow_ray_kind(depth_));
+        for (size_t i = 0; i < count; ++i) occluded[order[i]] = result[i];
     });
     for (size_t i = 0; i < occluded.size(); ++i) {
         if (c_.recorder) c_.recorder->shadow(occluded[i] != 0);
@@ -129,15 +165,14 @@ void WavefrontIntegrator::trace_shadow_rays() noexcept {
     connections_.clear();
 }
 
-/// Calls trace(some rays, index of the first) until all are done or the job is cancelled: a cancelled job must not
-/// wait for thousands of rays, which in a hostile scene take milliseconds each.
+/// Calls trace(index of the first, number) for one slice of so many rays after the other, until all are done or the job
+/// is cancelled.
 template <class Trace>
-void WavefrontIntegrator::in_slices(std::span<const Ray> rays, Trace trace) const noexcept {
-    constexpr size_t kSlice = 512;
-    for (size_t first = 0; first < rays.size() && !stopped(); first += kSlice) {
-        const std::span<const Ray> slice = rays.subspan(first, std::min(kSlice, rays.size() - first));
-        trace(slice, first);
-        c_.rays.fetch_add(slice.size(), std::memory_order_relaxed);
+void WavefrontIntegrator::in_slices(size_t rays, Trace trace) const noexcept {
+    for (size_t first = 0; first < rays && !stopped(); first += kSlice) {
+        const size_t count = std::min(kSlice, rays - first);
+        trace(first, count);
+        c_.rays.fetch_add(count, std::memory_order_relaxed);
     }
 }
 

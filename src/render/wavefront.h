@@ -45,6 +45,11 @@ protected:
 
     /// Shades the hits of all paths that are still on their way: calls each_hit. `depth` bounces lie behind them.
     virtual void bounce(uint32_t depth) noexcept = 0;
+    /// Of the shadow rays from vertices with `depth` bounces behind them. Those of what the camera sees start side by
+    /// side and end at the same light.
+    virtual RayKind shadow_ray_kind(uint32_t depth) const noexcept {
+        return depth == 0 ? RayKind::coherent : RayKind::incoherent;
+    }
 
     /// Calls shade(id of the path, ray, hit) for each, in order.
     template <class Shade>
@@ -56,8 +61,9 @@ protected:
     }
     /// The path goes on along `ray`.
     void continue_along(uint32_t id, const Ray& ray) noexcept;
-    /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`.
-    void connect(uint32_t id, const Ray& shadow_ray, Rgb contribution) noexcept;
+    /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`. Rays of one `group`,
+    /// such as those towards one light, are traced together.
+    void connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept;
 
     /// A point where light is gathered.
     struct Vertex {
@@ -85,26 +91,31 @@ protected:
 private:
     /// A shadow ray's owner and what it brings when nothing is in the way.
     struct Connection {
-        uint32_t path;
+        uint32_t path, group;
         Rgb contribution;
     };
 
     void generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept;
     void advance(uint32_t depth) noexcept;
     void trace_shadow_rays() noexcept;
+    void order_pixels(const TileRect& tile) noexcept;
+    void order_shadow_rays() noexcept;
     void record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept;
     void accumulate(uint32_t count, std::span<RgbSum> sums) noexcept;
     template <class Trace>
-    void in_slices(std::span<const Ray> rays, Trace trace) const noexcept;
+    void in_slices(size_t rays, Trace trace) const noexcept;
 
     const uint32_t capacity_;
     Counters* counters_ = nullptr;  ///< of the unit under way
+    uint32_t depth_ = 0;            ///< bounces behind the paths under way
+    std::vector<uint32_t> pixels_;  ///< of the tile, in the order of their paths
     std::vector<Path> paths_;
     std::vector<uint32_t> active_, next_active_;
     std::vector<Ray> rays_, next_rays_;  ///< of the active paths, in the same order
     std::vector<Hit> hits_;
     std::vector<Ray> shadow_rays_;
     std::vector<Connection> connections_;
+    std::vector<uint32_t> shadow_order_;  ///< in which they are traced
     std::vector<uint8_t> occluded_;
 };
 
@@ -121,7 +132,7 @@ void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t
     if (c_.recorder)
         c_.recorder->light(
             {light, {}, towards->wi, towards->pdf, scattered.pdf, mis_weight, contribution, brings, false});
-    if (brings) connect(id, towards->shadow_ray, contribution);
+    if (brings) connect(id, light, towards->shadow_ray, contribution);
 }
 
 template <class Weight>
