@@ -21,6 +21,12 @@ struct CompactLanes : CompactBlock {
 };
 
 /// As for other nodes.
+inline uint32_t ordered_at_most(Float8 in, Float8 out, const CompactNode& node, uint32_t octant_shift) {
+    const uint32_t met = at_most(in, out), order = node.order_of(octant_shift);
+    uint32_t ordered = 0;
+    for (uint32_t place = 0; place < kWidth; ++place) ordered |= (met >> (order >> (3 * place) & 7) & 1) << place;
+    return ordered & node.present_in_order();
+}
 inline uint32_t push_met(Float8 in, Float8 out, float limit, const CompactNode& node, uint32_t octant_shift,
                          float* t_in, uint32_t* ref) {
     const uint32_t met = at_most(in, out) & at_most(in, Float8::all(limit)) & node.present();

@@ -13,6 +13,16 @@ inline const Node& node_at(const LevelView& level, uint32_t index) {
 /// Bits of the children that exist: decoded boxes of others may be met.
 inline uint32_t existing(const Node& node) { return node.present(); }
 
+/// Which child comes at a place of the order from far to near.
+inline uint32_t child_at(const Node& node, uint32_t place, uint32_t octant_shift) {
+    return node.order_of(octant_shift) >> (3 * place) & 7;
+}
+
+/// One plane of one child, decoded in the same way as those of Planes.
+inline float plane_of(const Node& node, int axis, uint64_t offset, uint32_t child) {
+    return static_cast<float>((&node.plane[0][0][0])[offset + child]) * node.scale[axis] + node.origin[axis];
+}
+
 /// The planes of a node along an axis: CompactNode::decoded, operation by operation.
 struct Planes {
     const uint8_t* first;
@@ -23,8 +33,41 @@ struct Planes {
     Float8 at(uint64_t offset) const { return Float8::of_bytes(first + offset) * scale + origin; }
 };
 
+/// Those of all axes and of single children as well; `offset` as above.
+struct alignas(64) AllPlanes {
+    float plane[6][kWidth];
+    explicit AllPlanes(const Node& node) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const Planes planes(node, axis);
+            for (int i = 2 * axis; i < 2 * axis + 2; ++i)
+                planes.at(static_cast<uint32_t>(i) * kPlaneBytes).store(plane[i]);
+        }
+    }
+    const float* at(uint64_t offset) const { return &plane[0][0] + offset; }
+};
+static_assert(kPlaneBytes == kWidth);
+
 /// Four triangles.
 using Block = CompactLanes;
+
+/// A place is that of a triangle among all of its level, which leaves some out.
+inline CompactBlock block_of(const LevelView& level, uint32_t place) {
+    return CompactBlock(static_cast<const uint64_t*>(level.blocks) + place / kBlock);
+}
+
+/// The vertices of kGroup triangles, side by side.
+inline void gather_corners(const LevelView& level, const uint32_t* places, Floats corner[3][3]) {
+    alignas(64) float p[3][3][kGroup];
+    for (uint32_t k = 0; k < kGroup; ++k) {
+        const CompactBlock block = block_of(level, places[k]);
+        for (uint32_t c = 0; c < 3; ++c) {
+            const Vec3 vertex = block.corner(c, places[k] % kBlock);
+            for (int axis = 0; axis < 3; ++axis) p[c][axis][k] = vertex[axis];
+        }
+    }
+    for (int c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis) corner[c][axis] = Floats::load(p[c][axis]);
+}
 
 inline uint64_t first_block(uint32_t leaf_ref) { return CompactRef::offset(leaf_ref); }
 
@@ -36,6 +79,9 @@ struct Blocks {
         : at(static_cast<const uint64_t*>(level.blocks) + CompactRef::offset(ref)) {}
     bool more() const { return open; }
     Block block() const { return Block(at); }
+    uint32_t place(const LevelView& level) const {
+        return static_cast<uint32_t>(at.unit - static_cast<const uint64_t*>(level.blocks)) * kBlock;
+    }
     void next() {
         open = !at.last();
         at = CompactBlock(at.unit + at.units());

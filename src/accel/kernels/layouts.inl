@@ -23,13 +23,15 @@ namespace {
 #include "accel/kernels/kernel.inl"
 
 #include "accel/kernels/entries.inl"
+
+#include "accel/kernels/packet.inl"
 }  // namespace
 }  // namespace compact
 
 namespace {
 constexpr Kernels kFullKernels = {full::intersect,          full::occluded,          full::next_hit,
                                   full::intersect_coherent, full::occluded_coherent, full::occluded_or_cut_out};
-// Without packets: rays that go the same way are traced as any others.
-constexpr Kernels kCompactKernels = {compact::intersect, compact::occluded, compact::next_hit,
-                                     compact::intersect, compact::occluded, compact::occluded_or_cut_out};
+constexpr Kernels kCompactKernels = {
+    compact::intersect,          compact::occluded,          compact::next_hit,
+    compact::intersect_coherent, compact::occluded_coherent, compact::occluded_or_cut_out};
 }  // namespace

@@ -20,7 +20,7 @@ struct alignas(64) Packet {
     float low[kPacket];
     uint32_t best[kPacket];
     float u[kPacket], v[kPacket];
-    uint32_t place[kPacket];  ///< of a triangle that is pending: block * kBlock + lane
+    uint32_t place[kPacket];  ///< of a triangle that is pending: see block_of()
     // Pairs of rays and triangles about which float cannot decide.
     uint32_t open_count, open_ray[kMaxOpen], open_place[kMaxOpen];
     uint32_t pending;  ///< a bit for every ray whose nearest triangle has no exact t, u and v, nor an id, yet
@@ -34,7 +34,6 @@ struct alignas(64) Packet {
     uint32_t octant_shift;
     uint64_t near_plane[3], far_plane[3];
     int axis[3];  ///< as in TriangleRay
-    const WideNode* nodes;
 
     const Ray* ray[kPacket];  ///< canonical
     uint32_t index[kPacket];  ///< in its batch
@@ -47,7 +46,8 @@ static_assert(offsetof(Packet, low) % 64 == 0 && offsetof(Packet, place) % 64 ==
 struct PacketEntry {
     alignas(64) float t_in[kPacket];
     uint32_t ref, rays;
-    const float* planes;  ///< of this child, in its parent
+    const Node* parent;
+    uint32_t child;  ///< which one of the parent
 };
 
 /// Packets are proved for origins and lengths of directions within these; other rays go by themselves.
@@ -91,7 +91,7 @@ inline bool set_shear(Packet& p) {
 }
 
 /// Of p.ray. False when these rays cannot go as a packet.
-inline bool form(Packet& p, const World& world) {
+inline bool form(Packet& p) {
     static_assert(sizeof(Ray) == 8 * sizeof(float));
     const float* rows[kPacket];
     for (uint32_t i = 0; i < kPacket; ++i) rows[i] = &p.ray[i]->o.x;
@@ -107,8 +107,8 @@ inline bool form(Packet& p, const World& world) {
         const uint32_t negative = at_most(inv_d, Float16::all(0));
         if (negative != 0 && negative != (1u << kPacket) - 1) return false;
         p.negative[axis] = negative != 0;
-        p.near_plane[axis] = static_cast<uint32_t>(2 * axis + p.negative[axis]) * sizeof(float[kWidth]);
-        p.far_plane[axis] = p.near_plane[axis] ^ sizeof(float[kWidth]);
+        p.near_plane[axis] = static_cast<uint32_t>(2 * axis + p.negative[axis]) * kPlaneBytes;
+        p.far_plane[axis] = p.near_plane[axis] ^ kPlaneBytes;
         p.octant_shift += p.negative[axis] ? 3u << axis : 0u;
         // A product with the larger one may be NaN, and must then be the one that counts as nothing.
         p.inv_d_range[axis][0] = p.negative[axis] ? largest(inv_d) : least(inv_d);
@@ -118,7 +118,6 @@ inline bool form(Packet& p, const World& world) {
         p.one_origin = p.one_origin && p.o_range[axis][0] == p.o_range[axis][1];
     }
     p.least_start = least(Float16::load(p.start));
-    p.nodes = static_cast<const WideNode*>(world.upper.nodes);
     p.started = p.pending = p.open_count = 0;
     return true;
 }
@@ -126,16 +125,16 @@ inline bool form(Packet& p, const World& world) {
 /// A bit for every child that some ray of the packet may meet, at its place in the order from far to near. For every
 /// ray t = (plane - o) * inv_d lies between the least and the largest of the four products of ends of intervals, and so
 /// it does when all of them are rounded.
-inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
-    const char* planes = reinterpret_cast<const char*>(&node);
-    const auto plane = [&](uint64_t offset) { return Float8::load(reinterpret_cast<const float*>(planes + offset)); };
+inline uint32_t test_intervals(const Packet& p, const Node& node, const AllPlanes& planes) {
     Float8 in = Float8::all(p.least_start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         const Float8 inv_small = Float8::all(p.inv_d_range[axis][0]), inv_large = Float8::all(p.inv_d_range[axis][1]);
         // (near - o) * inv_d is least for the origin farthest along the ray; (far - o) * inv_d is largest for the
         // other.
-        const Float8 near = plane(p.near_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
-        const Float8 far = plane(p.far_plane[axis]) - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
+        const Float8 near =
+            Float8::load(planes.at(p.near_plane[axis])) - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
+        const Float8 far =
+            Float8::load(planes.at(p.far_plane[axis])) - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
         in = larger(smaller(near * inv_small, near * inv_large), in);
         out = smaller(larger(far * inv_small, far * inv_large), out);
     }
@@ -143,13 +142,12 @@ inline uint32_t test_intervals(const Packet& p, const WideNode& node) {
 }
 
 /// The rays, of those given, that meet the child; their t_in.
-inline uint32_t test_child(const Packet& p, const WideNode& node, uint32_t child, uint32_t rays, float* t_in) {
-    const char* planes = reinterpret_cast<const char*>(&node) + child * sizeof(float);
+inline uint32_t test_child(const Packet& p, const AllPlanes& planes, uint32_t child, uint32_t rays, float* t_in) {
     Float16 in = Float16::load(p.start), out = Float16::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         const Float16 o = Float16::load(p.o[axis]), inv_d = Float16::load(p.inv_d[axis]);
-        const float near = *reinterpret_cast<const float*>(planes + p.near_plane[axis]);
-        const float far = *reinterpret_cast<const float*>(planes + p.far_plane[axis]);
+        const float near = planes.at(p.near_plane[axis])[child];
+        const float far = planes.at(p.far_plane[axis])[child];
         in = larger((Float16::all(near) - o) * inv_d, in);
         out = smaller((Float16::all(far) - o) * inv_d, out);
     }
@@ -228,28 +226,30 @@ inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
     constexpr int kAlone = 1;
     uint32_t depth = 0;
     uint32_t ref = ChildRef::node(0), rays = (1u << kPacket) - 1;
-    const float *t_in = p.start, *planes = nullptr;
+    const float* t_in = p.start;
+    const PacketEntry* entry_of = nullptr;
     while (true) {
         const bool leaf = ChildRef::is_leaf(ref);
         if (__builtin_popcount(rays) <= kAlone || (leaf && ChildRef::kind(ref) != ItemKind::block)) {
             part<kMode>(p, world, ref, rays, t_in);
         } else if (leaf) {
-            visit_leaf<kMode>(p, world, ref, rays, planes);
+            visit_leaf<kMode>(p, world, ref, rays, *entry_of->parent, entry_of->child);
         } else {
-            const WideNode& node = p.nodes[ref];
-            for (uint32_t maybe = test_intervals(p, node); maybe; maybe &= maybe - 1) {
-                const uint32_t child = node.order[__builtin_ctz(maybe)] >> p.octant_shift & 7;
+            const Node& node = node_at(world.upper, ref);
+            const AllPlanes planes(node);
+            for (uint32_t maybe = test_intervals(p, node, planes); maybe; maybe &= maybe - 1) {
+                const uint32_t child = child_at(node, static_cast<uint32_t>(__builtin_ctz(maybe)), p.octant_shift);
                 PacketEntry& entry = stack[depth];
                 entry.ref = node.child[child];
-                entry.planes = node.plane[0][0] + child;
-                entry.rays = test_child(p, node, child, rays, entry.t_in);
+                entry.parent = &node, entry.child = child;
+                entry.rays = test_child(p, planes, child, rays, entry.t_in);
                 depth += entry.rays != 0;
             }
         }
         do {
             if (depth == 0) return decide<kMode>(p, world);
             const PacketEntry& top = stack[--depth];
-            ref = top.ref, t_in = top.t_in, planes = top.planes;
+            ref = top.ref, t_in = top.t_in, entry_of = &top;
             rays = top.rays & at_most(Float16::load(top.t_in), Float16::load(p.limit));
         } while (rays == 0);
     }
@@ -277,7 +277,7 @@ inline void trace_coherent(const World& world, const Ray* rays, size_t count, Fi
         }
         if (used + kPacket > kInFlight) queues.template run<kMode>(world, land), used = 0;
         packet.flights = flights + used;
-        const bool whole = together == kPacket && form(packet, world);
+        const bool whole = together == kPacket && form(packet);
         if (whole) trace_packet<kMode>(packet, world, stack);
         for (uint32_t i = 0; i < together; ++i) {
             Flight& f = flights[used + i];

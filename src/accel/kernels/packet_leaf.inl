@@ -24,12 +24,12 @@ struct LeafErrors {
     float t_constant;   ///< ... and this
 };
 
-/// `planes` are those of the child in its node.
-inline LeafErrors leaf_errors(const Packet& p, const float* planes) {
+inline LeafErrors leaf_errors(const Packet& p, const Node& node, uint32_t child) {
     constexpr float kU = 0x1p-24f;
     float far = 0, extent[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const float lo = planes[2 * axis * kWidth], hi = planes[(2 * axis + 1) * kWidth];
+        const uint64_t plane = static_cast<uint32_t>(2 * axis) * kPlaneBytes;
+        const float lo = plane_of(node, axis, plane, child), hi = plane_of(node, axis, plane + kPlaneBytes, child);
         extent[axis] = hi - lo;
         far = max_of(far, max_of(hi - p.o_range[axis][0], p.o_range[axis][1] - lo));
     }
@@ -63,14 +63,11 @@ struct ExactGroup {
     uint32_t undecided;  ///< of those: the sign of a difference that came out as 0 is still open
 
     ExactGroup(const Packet& p, const World& world, const uint32_t* rays, const uint32_t* places) {
-        const float *triangle[kGroup], *ray[kGroup];
-        for (uint32_t k = 0; k < kGroup; ++k) {
-            triangle[k] = &block_at(world.upper, places[k] / kBlock).vertex[0][0][places[k] % kBlock];
-            ray[k] = p.o[0] + rays[k];
-        }
         Floats corner[3][3], o[3], d[3], inv_d[3];
+        gather_corners(world.upper, places, corner);
+        const float* ray[kGroup];
+        for (uint32_t k = 0; k < kGroup; ++k) ray[k] = p.o[0] + rays[k];
         for (int axis = 0; axis < 3; ++axis) {
-            for (int c = 0; c < 3; ++c) corner[c][axis] = gathered(triangle, (3 * c + axis) * kBlock);
             o[axis] = gathered(ray, p.o[axis] - p.o[0]);
             d[axis] = gathered(ray, p.d[axis] - p.o[0]);
             inv_d[axis] = gathered(ray, p.inv_d[axis] - p.o[0]);
@@ -124,7 +121,7 @@ inline void resolve_all(Packet& p, const World& world) {
         for (uint32_t k = 0; k < kGroup; ++k) {
             const uint32_t i = ray[k];
             limit_weights(of_p1[k], of_p2[k]);
-            p.best[i] = block_at(world.upper, place[k] / kBlock).prim[place[k] % kBlock];
+            p.best[i] = block_of(world.upper, place[k]).prim(place[k] % kBlock);
             p.limit[i] = p.low[i] = t[k];
             p.u[i] = of_p1[k], p.v[i] = of_p2[k];
         }
@@ -136,7 +133,7 @@ inline void resolve_all(Packet& p, const World& world) {
 template <Mode kMode>
 [[gnu::noinline]] void test_pair(Packet& p, const World& world, uint32_t i, uint32_t place) {
     const Ray& ray = *p.ray[i];
-    const TriangleBlock& block = block_at(world.upper, place / kBlock);
+    const auto block = block_of(world.upper, place);
     const uint32_t lane = place % kBlock;
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     const TriangleRay triangle_ray(ray);
@@ -145,7 +142,7 @@ template <Mode kMode>
     if (!edges.inside() ||
         !settle(edges.candidate(triangle_ray.d_z).t, slab_interval(triangle_bounds(p0, p1, p2), SlabRay(ray)), {}, t))
         return;
-    if (p.start[i] <= t && t <= p.limit[i]) take<kMode>(p, i, t, block.prim[lane], edges);
+    if (p.start[i] <= t && t <= p.limit[i]) take<kMode>(p, i, t, block.prim(lane), edges);
 }
 
 /// Decides what was left open.
@@ -167,7 +164,7 @@ template <Mode kMode>
             if (exact.undecided >> k & 1) {
                 test_pair<kMode>(p, world, i, place[k]);
             } else if (p.start[i] <= ts[k] && ts[k] <= p.limit[i]) {
-                const uint32_t id = block_at(world.upper, place[k] / kBlock).prim[place[k] % kBlock];
+                const uint32_t id = block_of(world.upper, place[k]).prim(place[k] % kBlock);
                 take<kMode>(p, i, ts[k], id, {us[k], vs[k], ws[k], {}});
             }
         }
@@ -223,15 +220,28 @@ template <Mode kMode>
 }
 
 /// A bit for every lane that holds a triangle.
-inline uint32_t triangles_of(const TriangleBlock& block) {
+inline uint32_t triangles_of(const Block& block) {
     uint32_t lanes = 0;
-    for (uint32_t lane = 0; lane < kBlock; ++lane) lanes |= uint32_t(block.prim[lane] != kNoHit) << lane;
+    for (uint32_t lane = 0; lane < kBlock; ++lane) lanes |= uint32_t(block.prim(lane) != kNoHit) << lane;
     return lanes;
 }
 
 /// The vertices of a block with the axes of TriangleRay, relative to the origin where all rays have the same.
 struct alignas(16) MovedBlock {
     float vertex[3][3][kBlock];
+    uint32_t place;  ///< of the first triangle
+    uint32_t lanes;  ///< a bit for each that holds a triangle
+
+    template <bool kOneOrigin>
+    void set(const Packet& p, const Block& block, uint32_t first) {
+        for (int k = 0; k < 3; ++k) {
+            Float4 at[3];
+            block.corners(p.axis[k], at);
+            for (int corner = 0; corner < 3; ++corner)
+                (kOneOrigin ? at[corner] - Float4::all(p.o_range[p.axis[k]][0]) : at[corner]).store(vertex[corner][k]);
+        }
+        place = first, lanes = triangles_of(block);
+    }
 };
 
 /// A triangle in the shear of eight rays.
@@ -260,7 +270,7 @@ struct ShearedTriangle {
     Float8 high() const { return larger(larger(u, v), w); }
 };
 
-/// A triangle that some ray of the group comes close to. `place`: block * kBlock + lane.
+/// A triangle that some ray of the group comes close to.
 template <Mode kMode, bool kOneOrigin>
 inline void test_close(Packet& p, RayGroup& g, const MovedBlock& block, uint32_t place, const ShearedTriangle& s,
                        uint32_t close, const LeafErrors& errors) {
@@ -293,49 +303,55 @@ inline void test_close(Packet& p, RayGroup& g, const MovedBlock& block, uint32_t
     }
 }
 
+/// A run of blocks against the given rays of the packet.
 template <Mode kMode, bool kOneOrigin>
-inline void test_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays, const LeafErrors& errors) {
-    uint32_t places[kPacket], count = 0;
-    for (; rays; rays &= rays - 1) places[count++] = static_cast<uint32_t>(__builtin_ctz(rays));
-    const uint32_t first = ChildRef::first(ref), blocks = ChildRef::count(ref);
-    MovedBlock moved[ChildRef::kMaxRun];
-    for (uint32_t b = 0; b < blocks; ++b)
-        for (int corner = 0; corner < 3; ++corner)
-            for (int k = 0; k < 3; ++k) {
-                const Float4 at = Float4::load(block_at(world.upper, first + b).vertex[corner][p.axis[k]]);
-                (kOneOrigin ? at - Float4::all(p.o_range[p.axis[k]][0]) : at).store(moved[b].vertex[corner][k]);
-            }
+inline void test_blocks(Packet& p, const World& world, const MovedBlock* blocks, uint32_t block_count,
+                        const uint32_t* rays, uint32_t ray_count, const LeafErrors& errors) {
     const Float8 error = Float8::all(errors.edge), minus_error = Float8::all(-errors.edge);
-    for (uint32_t done = 0; done < count; done += kWidth) {
+    for (uint32_t done = 0; done < ray_count; done += kWidth) {
         RayGroup g;
-        g.set(p, places + done, min_of(count - done, kWidth));
-        for (uint32_t b = 0; b < blocks; ++b) {
+        g.set(p, rays + done, min_of(ray_count - done, kWidth));
+        for (const MovedBlock* block = blocks; block < blocks + block_count; ++block) {
             if (p.open_count + kBlock * kWidth > kMaxOpen) decide_and_reload<kMode>(p, world, g);
             // All triangles before any of them is looked at more closely: that is nearly always one or two, and nobody
             // can guess which.
             ShearedTriangle sheared[kBlock];
             uint32_t close[kBlock], some = 0;
             for (uint32_t lane = 0; lane < kBlock; ++lane) {
-                sheared[lane] = ShearedTriangle::of<kOneOrigin>(g, moved[b], lane);
+                sheared[lane] = ShearedTriangle::of<kOneOrigin>(g, *block, lane);
                 const uint32_t missed =
                     at_most(sheared[lane].low(), minus_error) & at_most(error, sheared[lane].high());
                 close[lane] = ~missed;
                 some |= uint32_t((g.used & ~missed) != 0) << lane;
             }
-            for (some &= triangles_of(block_at(world.upper, first + b)); some; some &= some - 1) {
+            for (some &= block->lanes; some; some &= some - 1) {
                 const auto lane = static_cast<uint32_t>(__builtin_ctz(some));
-                test_close<kMode, kOneOrigin>(p, g, moved[b], (first + b) * kBlock + lane, sheared[lane],
-                                              close[lane] & g.used, errors);
+                test_close<kMode, kOneOrigin>(p, g, *block, block->place + lane, sheared[lane], close[lane] & g.used,
+                                              errors);
             }
         }
         put_back<kMode>(p, g);
     }
 }
 
-/// The triangles of a leaf, whose planes are given as for leaf_errors(), against the given rays.
+template <Mode kMode, bool kOneOrigin>
+inline void test_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays, const LeafErrors& errors) {
+    uint32_t places[kPacket], count = 0;
+    for (; rays; rays &= rays - 1) places[count++] = static_cast<uint32_t>(__builtin_ctz(rays));
+    Blocks blocks(world.upper, ref);
+    while (blocks.more()) {
+        MovedBlock moved[ChildRef::kMaxRun];
+        uint32_t number = 0;
+        for (; number < ChildRef::kMaxRun && blocks.more(); blocks.next())
+            moved[number++].set<kOneOrigin>(p, blocks.block(), blocks.place(world.upper));
+        test_blocks<kMode, kOneOrigin>(p, world, moved, number, places, count, errors);
+    }
+}
+
+/// The triangles of a leaf, which is a child of the given node, against the given rays.
 template <Mode kMode>
-inline void visit_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays, const float* planes) {
-    const LeafErrors errors = leaf_errors(p, planes);
+inline void visit_leaf(Packet& p, const World& world, uint32_t ref, uint32_t rays, const Node& node, uint32_t child) {
+    const LeafErrors errors = leaf_errors(p, node, child);
     if (p.one_origin) {
         test_leaf<kMode, true>(p, world, ref, rays, errors);
     } else {

@@ -74,9 +74,11 @@ inline __m256i places_of(uint32_t bits) {
 #include "accel/kernels/avx_lanes.inl"
 
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
-inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
+template <class AnyNode>
+inline uint32_t ordered_at_most(Float8 in, Float8 out, const AnyNode& node, uint32_t octant_shift) {
     const __m256i lane = lanes_in_order(node, octant_shift);
-    return at_most({_mm256_permutevar8x32_ps(in.v, lane)}, {_mm256_permutevar8x32_ps(out.v, lane)});
+    return at_most({_mm256_permutevar8x32_ps(in.v, lane)}, {_mm256_permutevar8x32_ps(out.v, lane)}) &
+           present_in_order(node);
 }
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.

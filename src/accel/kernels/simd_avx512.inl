@@ -56,9 +56,10 @@ inline uint32_t not_positive(Double4 a) { return _mm256_cmp_pd_mask(a.v, _mm256_
 #include "accel/kernels/avx_lanes.inl"
 
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
-inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
+template <class AnyNode>
+inline uint32_t ordered_at_most(Float8 in, Float8 out, const AnyNode& node, uint32_t octant_shift) {
     const __m256i lane = lanes_in_order(node, octant_shift);
-    return at_most({_mm256_permutexvar_ps(lane, in.v)}, {_mm256_permutexvar_ps(lane, out.v)});
+    return at_most({_mm256_permutexvar_ps(lane, in.v)}, {_mm256_permutexvar_ps(lane, out.v)}) & present_in_order(node);
 }
 
 /// Pushes the children that are met (in <= out, in <= limit) with their t_in, from far to near; returns their number.
