@@ -214,15 +214,54 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight, E
 
 // --- Cameras ---------------------------------------------------------------------------------------------------
 
-/// Pinhole. The picture's up is `up` made perpendicular to the view.
+// Of all kinds: `look_at` is in the middle of the picture, and what is up there is `up` made perpendicular to the view.
+
+inline constexpr uint32_t kMinApertureBlades = 3, kMaxApertureBlades = 64;
+
+/// Pinhole, or with an aperture a thin lens. What lies in the plane at `focus_distance`, perpendicular to the view, is
+/// sharp; a point at distance d is spread over the aperture's image, |d - f| / d times its size in that plane. A pixel
+/// is the mean of the radiance over filter and aperture, so the aperture does not change the exposure.
 struct PerspectiveCamera {
     Vec3 position{0, 0, 0};
     Vec3 look_at{0, 0, -1};
     Vec3 up{0, 1, 0};
-    float vertical_fov = 40;  ///< degrees, in (0, 180)
+    float vertical_fov = 40;                             ///< degrees, in (0, 180)
+    float aperture_radius = 0;                           ///< metres, up to 1e15; 0: pinhole
+    std::optional<float> focus_distance = std::nullopt;  ///< metres along the view, > 0; nothing: that of look_at
+    uint32_t aperture_blades = 0;  ///< 0: round; 3 … 64: a regular polygon with corners at the radius
+    float aperture_rotation = 0;   ///< degrees, counter-clockwise in the picture; at 0 a corner is to the right
 };
 
-using Camera = std::variant<PerspectiveCamera>;
+/// Parallel rays along the view, from the plane through `position`.
+struct OrthographicCamera {
+    Vec3 position{0, 0, 0};
+    Vec3 look_at{0, 0, -1};
+    Vec3 up{0, 1, 0};
+    float height = 2;  ///< metres between the picture's top and bottom, > 0
+};
+
+/// The whole sphere of directions as a latitude-longitude picture: the top row is `up`, a quarter to the right of the
+/// middle is to the right.
+struct PanoramaCamera {
+    Vec3 position{0, 0, 0};
+    Vec3 look_at{0, 0, -1};
+    Vec3 up{0, 1, 0};
+};
+
+/// How far from the middle a direction appears that is an angle θ off the view: proportional to θ, or to sin(θ/2),
+/// which gives all pixels the same solid angle.
+enum class FisheyeProjection : uint8_t { equidistant, equisolid };
+
+/// A round picture that touches the nearer sides of the frame; black outside.
+struct FisheyeCamera {
+    Vec3 position{0, 0, 0};
+    Vec3 look_at{0, 0, -1};
+    Vec3 up{0, 1, 0};
+    float fov = 180;  ///< across the circle; degrees, in (0, 360]
+    FisheyeProjection projection = FisheyeProjection::equidistant;
+};
+
+using Camera = std::variant<PerspectiveCamera, OrthographicCamera, PanoramaCamera, FisheyeCamera>;
 
 // --- The scene -------------------------------------------------------------------------------------------------
 

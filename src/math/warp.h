@@ -24,6 +24,24 @@ inline DiskPoint disk(Vec2 u) {
     const double angle = wide ? std::numbers::pi / 4 * (b / a) : std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
     return {r * math::cos(angle), r * math::sin(angle), std::fabs(r)};
 }
+/// Uniform on the regular polygon with its corners on the unit circle, the first one at (1, 0): the disk, with its
+/// circles pushed to polygons. The angle becomes a place on the outline, so areas keep their ratio and all is
+/// continuous. The density is 2 / (n sin(2π / n)) per area.
+inline DiskPoint polygon(Vec2 u, uint32_t corners) {
+    const double a = 2 * cell_middle(u.x) - 1;
+    const double b = 2 * cell_middle(u.y) - 1;
+    const bool wide = std::fabs(a) > std::fabs(b);
+    const double eighth = wide ? b / a : 2 - a / b;  // of a turn, from (1, 0) or from (-1, 0)
+    const bool opposite = (wide ? a : b) < 0;
+    double turn = eighth / 8 + (opposite ? 0.5 : 0);
+    if (turn < 0) turn += 1;
+    const double along = turn * corners, first = std::floor(along), t = along - first;
+    const double step = 2 * std::numbers::pi / corners;
+    const double r = std::fabs(wide ? a : b);
+    const double x = (1 - t) * math::cos(first * step) + t * math::cos((first + 1) * step);
+    const double y = (1 - t) * math::sin(first * step) + t * math::sin((first + 1) * step);
+    return {r * x, r * y, r * std::sqrt(x * x + y * y)};
+}
 /// Per area.
 inline constexpr double kDiskPdf = 1 / std::numbers::pi;
 

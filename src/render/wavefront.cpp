@@ -84,10 +84,12 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         const Vec2 film{static_cast<float>(path.x) + 0.5f + position.offset.x,
                         static_cast<float>(path.y) + 0.5f + position.offset.y};
         if (c_.recorder) c_.recorder->camera(film, path.weight);
-        rays_.push_back(c_.camera.generate(film));
+        if (!c_.camera.sees(film)) continue;
+        const Vec2 lens = c_.camera.has_lens() ? c_.sampler.get_2d(path.key, kLensDimension) : Vec2{};
+        rays_.push_back(c_.camera.generate(film, lens));
         active_.push_back(i);
     }
-    counters_->camera_rays += pixels * samples;
+    counters_->camera_rays += active_.size();
 }
 
 /// One bounce of all paths that are still on their way.

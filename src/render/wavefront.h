@@ -14,7 +14,8 @@ namespace steradian {
 
 /// Which numbers of a sample are used for what. Groups of four belong together (sampler.h).
 enum Dimension : uint32_t {
-    kFilterDimension = 0,             // and 1; 2 and 3 are for a lens
+    kFilterDimension = 0,             // and 1
+    kLensDimension = 2,               // and 3
     kBounceDimension = 4,             // four per bounce: choice of lobe, Russian roulette, direction
     kLightDimension = 0x40000000,     // four per light, where all are sampled: position, choice of part, unused
     kOneLightDimension = 0x80000000,  // four per bounce, where one light is sampled: position, choice of part, of light

@@ -83,7 +83,13 @@ private:
     void put(const EnvironmentLight& l) {
         put(l.radiance, l.image.has_value(), l.image.value_or(ImageId{}), l.color_space, l.rotation, l.samples);
     }
-    void put(const PerspectiveCamera& c) { put(c.position, c.look_at, c.up, c.vertical_fov); }
+    void put(const PerspectiveCamera& c) {
+        put(c.position, c.look_at, c.up, c.vertical_fov, c.aperture_radius, c.focus_distance.has_value(),
+            c.focus_distance.value_or(0), c.aperture_blades, c.aperture_rotation);
+    }
+    void put(const OrthographicCamera& c) { put(c.position, c.look_at, c.up, c.height); }
+    void put(const PanoramaCamera& c) { put(c.position, c.look_at, c.up); }
+    void put(const FisheyeCamera& c) { put(c.position, c.look_at, c.up, c.fov, c.projection); }
 
     Hasher hash_;
 };

@@ -187,11 +187,32 @@ private:
         samples(l.samples);
     }
     /// Whether the axes make sense together is the camera's own business (CameraSampler::make).
-    void check(const PerspectiveCamera& c) const {
+    template <class C>
+    void pose(const C& c) const {
         point(c.position, "the position must be finite and within 1e15");
         point(c.look_at, "look_at must be finite and within 1e15");
         direction(c.up, "up must be finite and not zero");
+    }
+    void check(const PerspectiveCamera& c) const {
+        pose(c);
         require(c.vertical_fov > 0 && c.vertical_fov < 180, "the field of view must be between 0 and 180 degrees");
+        require(c.aperture_radius >= 0 && c.aperture_radius <= kMaxCoordinate,
+                "the aperture's radius must be between 0 and 1e15");
+        const float focus = c.focus_distance.value_or(1);
+        require(focus > 0 && focus <= kMaxCoordinate, "the focus distance must be positive and at most 1e15");
+        require(c.aperture_blades == 0 ||
+                    (c.aperture_blades >= kMinApertureBlades && c.aperture_blades <= kMaxApertureBlades),
+                "an aperture has 3 to 64 blades, or 0 where it is round");
+        require(is_finite(c.aperture_rotation), "the aperture's rotation must be finite");
+    }
+    void check(const OrthographicCamera& c) const {
+        pose(c);
+        require(c.height > 0 && c.height <= kMaxCoordinate, "the height must be positive and at most 1e15");
+    }
+    void check(const PanoramaCamera& c) const { pose(c); }
+    void check(const FisheyeCamera& c) const {
+        pose(c);
+        require(c.fov > 0 && c.fov <= 360, "the field of view must be in (0, 360] degrees");
     }
 
     void light_uniqueness() const {

@@ -118,11 +118,100 @@ void add_filters(std::vector<Case>& out) {
     }
 }
 
+Object camera_of(std::string_view type, V3 from = {0, 0, 0}, V3 at = {0, 0, -1}) {
+    return Object(type).set("position", from).set("look_at", at);
+}
+
+/// Kinds of cameras by what share of the picture an emitter of a known angle or size fills.
+void add_projections(std::vector<Case>& out) {
+    const auto scene = [](int width, int height, const Object& camera) {
+        return straight(width, height).camera(camera);
+    };
+    // 3 m away and 1 m high in a picture that is 4 m high and 8 m wide; distance is of no account.
+    const SceneText plan =
+        scene(32, 16, camera_of("orthographic").set("height", 4.0))
+            .object(rectangle({1, 0.5, -3}, {1, 0, 0}, {0, 0.5, 0}, "black").set("light", emission(1.0)));
+    Case ortho = whole("camera_orthographic", "L where the rectangle is, whatever its distance", plan, 2.0 / 32);
+    ortho.expected = {{0, 0, 0, 0, 2.0 / 32, false},
+                      {16, 4, 24, 8, 1, true},
+                      {0, 0, 16, 16, 0.0, true},
+                      {16, 8, 32, 16, 0.0, true},
+                      {24, 0, 32, 16, 0.0, true}};
+    out.push_back(ortho);
+
+    // A cap of 45° about the zenith fills the upper quarter.
+    Case cap = whole("camera_panorama_zenith", "the rows that are within 45° of up",
+                     scene(32, 16, camera_of("panorama", {0, 0, 0}, {1, 0, -1}))
+                         .object(disk({0, 2, 0}, {0, -1, 0}, 2, "black").set("light", emission(1.0))),
+                     0.25);
+    cap.expected = {{0, 0, 32, 4, 1, true}, {0, 4, 32, 16, 0.0, true}};
+    out.push_back(cap);
+    // The walls of a room, seen from its middle: red at +X, green at -Z, blue at -X, white at +Z.
+    SceneText room = scene(32, 16, camera_of("panorama"));
+    const auto wall = [&](V3 center, V3 along, Color color) {
+        room.object(rectangle(center, along, {0, 9, 0}, "black").set("light", emission(color, true)));
+    };
+    const Color red{1, 0, 0}, green{0, 1, 0}, blue{0, 0, 1}, white = 1.0;
+    wall({1, 0, 0}, {0, 0, 1}, red), wall({0, 0, -1}, {1, 0, 0}, green);
+    wall({-1, 0, 0}, {0, 0, 1}, blue), wall({0, 0, 1}, {1, 0, 0}, white);
+    Case walls = whole("camera_panorama_walls", "a quarter of the picture for each wall, in their order", room, 0.0);
+    walls.expected = {{0, 6, 4, 10, white, true},
+                      {4, 6, 12, 10, blue, true},
+                      {12, 6, 20, 10, green, true},
+                      {20, 6, 28, 10, red, true},
+                      {28, 6, 32, 10, white, true}};
+    out.push_back(walls);
+
+    // A sphere of half angle 30° in a fisheye of half angle 90°; an eighth of the samples of a pixel at its edge.
+    const auto ball = [&](const char* projection) {
+        return scene(16, 16, camera_of("fisheye").set("projection", projection))
+            .object(sphere({0, 0, -2}, 1, "black").set("light", emission(1.0)));
+    };
+    out.push_back(noisy(whole("camera_fisheye_equidistant", "L π/4 (30°/90°)²", ball("equidistant"), kPi / 36)));
+    const double s = std::sin(kPi / 12) / std::sin(kPi / 4);
+    out.push_back(
+        noisy(whole("camera_fisheye_equisolid", "L π/4 (sin 15° / sin 45°)²", ball("equisolid"), kPi / 4 * s * s)));
+    SceneText sky = scene(16, 16, camera_of("fisheye").set("fov", 360.0));
+    sky.light(environment(1.0));
+    Case circle = noisy(whole("camera_fisheye_circle", "L π/4: black outside the circle", sky, kPi / 4));
+    circle.expected.push_back({0, 0, 2, 2, 0.0, true});
+    circle.expected.push_back({4, 4, 12, 12, 1, true});
+    out.push_back(circle);
+}
+
+/// Focused at 1 m, the edge of an emitter at 2 m: what the lens sees of it through one point. A ray from (x, y) on the
+/// lens through (0, 0, -1) meets the emitter's plane at (-x, -y).
+void add_lenses(std::vector<Case>& out) {
+    const auto edge = [](double at, const Object& lens) {
+        Object camera = lens;
+        camera.set("position", V3{0, 0, 0}).set("look_at", V3{0, 0, -1}).set("vertical_fov", kNarrow);
+        return empty_scene().camera(camera).depth(0).samples(64).object(
+            rectangle({at + 2, 0, -2}, {2, 0, 0}, {0, 2, 0}, "black").set("light", emission(1.0)));
+    };
+    const auto lens = [] { return Object().set("aperture_radius", 0.1).set("focus_distance", 1.0); };
+    out.push_back(noisy(whole("camera_lens_edge", "the segment of a circle beyond half its radius", edge(0.05, lens()),
+                              (kPi / 3 - std::sqrt(3) / 4) / kPi)));
+    out.push_back(noisy(whole("camera_lens_far_focus", "the same with a circle of r (d - f) / f, a quarter as large",
+                              edge(0.0125, Object().set("aperture_radius", 0.1).set("focus_distance", 1.6)),
+                              (kPi / 3 - std::sqrt(3) / 4) / kPi)));
+    const Object square = lens().set("aperture_blades", 4).set("aperture_rotation", 45.0);
+    const double half = 0.1 * std::sqrt(0.5);
+    out.push_back(noisy(whole("camera_lens_square", "the part of a square aperture beyond the edge", edge(0.02, square),
+                              (half - 0.02) / (2 * half))));
+    // A triangle with a corner to the right sees through the point what is to the left: -x > -0.05 is all of it but
+    // the tip, a triangle of a third of its height.
+    const Object triangle = lens().set("aperture_blades", 3);
+    out.push_back(noisy(
+        whole("camera_lens_triangle", "a triangular aperture without its tip", edge(-0.05, triangle), 1 - 1.0 / 9)));
+}
+
 }  // namespace
 
 std::vector<Case> camera_cases() {
     std::vector<Case> out;
     add_layout(out);
+    add_projections(out);
+    add_lenses(out);
     add_filters(out);
     return out;
 }

@@ -67,6 +67,11 @@ SceneText& SceneText::look(V3 from, V3 at, double vertical_fov, V3 up) {
     return *this;
 }
 
+SceneText& SceneText::camera(const Object& value) {
+    camera_ = value.str();
+    return *this;
+}
+
 SceneText& SceneText::size(int width, int height) {
     width_ = width;
     height_ = height;

@@ -43,6 +43,8 @@ private:
 class SceneText {
 public:
     SceneText& look(V3 from, V3 at, double vertical_fov, V3 up = {0, 1, 0});
+    /// A camera of another kind.
+    SceneText& camera(const Object& value);
     SceneText& size(int width, int height);
     SceneText& depth(int bounces);
     /// `direct` where nothing is said.

@@ -117,8 +117,28 @@ TEST(SceneErrors, Cameras) {
         load_text(
             "{\"version\": 1, \"camera\": {\"position\": [0, 0, 5], \"look_at\": [0, 0, 0], \"vertical_fov\": 1e-9}}")
             .ok());
-    refused_camera("{\"type\": §\"fisheye\", \"position\": [0, 0, 5], \"look_at\": [0, 0, 0]}",
-                   "'type' cannot be \"fisheye\"", "expected perspective");
+    refused_camera("{\"type\": §\"fish\", \"position\": [0, 0, 5], \"look_at\": [0, 0, 0]}",
+                   "'type' cannot be \"fish\"", "expected one of perspective, orthographic, panorama, fisheye");
+    const auto refused_key = [](const std::string& type, const std::string& members, const std::string& message) {
+        refused_camera("{\"type\": \"" + type + "\", \"position\": [0, 0, 5], \"look_at\": [0, 0, 0], " + members + "}",
+                       message);
+    };
+    refused_key("perspective", "\"aperture_radius\": §-1", "'aperture_radius' must be from 0 to");
+    refused_key("perspective", "\"aperture_radius\": 1, \"focus_distance\": §0", "'focus_distance' must be from 1e-15");
+    for (const char* blades : {"2", "65", "0"})
+        refused_key("perspective", "\"aperture_radius\": 1, \"aperture_blades\": §" + std::string(blades),
+                    "'aperture_blades' must be a whole number from 3 to 64");
+    // What has no effect is refused.
+    refused_key("perspective", "§\"focus_distance\": 1", "focus_distance");
+    refused_key("perspective", "§\"aperture_blades\": 5", "aperture_blades");
+    refused_key("perspective", "\"aperture_radius\": 1, §\"aperture_rotation\": 5", "aperture_rotation");
+    refused_key("orthographic", "\"height\": §0", "'height' must be from 1e-15");
+    refused_key("orthographic", "§\"vertical_fov\": 40", "unknown key 'vertical_fov' in the camera");
+    refused_key("panorama", "§\"height\": 1", "unknown key 'height' in the camera");
+    refused_key("fisheye", "\"fov\": §361", "'fov' must be greater than 0 and at most 360");
+    refused_key("fisheye", "\"projection\": §\"stereographic\"", "'projection' cannot be \"stereographic\"");
+    refused_camera("{\"type\": \"panorama\", \"position\": [0, 5, 0], \"look_at\": §[0, 0, 0]}",
+                   "'up' is parallel to the camera's view");
     refused_camera("{\"position\": [0, 0, 5], \"look_at\": [0, 0, 0], §\"fov\": 30}", "unknown key 'fov' in the camera",
                    "vertical_fov");
     refused("§\"cameras\": {}", "either 'camera' or 'cameras'");

@@ -74,6 +74,36 @@ TEST(NativeScene, NamedCameras) {
     EXPECT_EQ(std::get<PerspectiveCamera>(loaded.scene.cameras[1]).up, (Vec3{0, 0, -1}));
 }
 
+TEST(NativeScene, CamerasOfEveryKind) {
+    const LoadedScene loaded = load_good(R"({"version": 1, "cameras": {
+        "lens": {"position": [0, 0, 5], "look_at": [0, 0, 0], "aperture_radius": 0.5, "focus_distance": 2,
+                 "aperture_blades": 6, "aperture_rotation": 15},
+        "round": {"type": "perspective", "position": [0, 0, 5], "look_at": [0, 0, 0], "aperture_radius": 0.25},
+        "plan": {"type": "orthographic", "position": [0, 9, 0], "look_at": [0, 0, 0], "up": [1, 0, 0], "height": 12},
+        "all": {"type": "panorama", "position": [1, 2, 3], "look_at": [0, 2, 3]},
+        "fish": {"type": "fisheye", "position": [0, 0, 5], "look_at": [0, 0, 0], "fov": 200, "projection": "equisolid"},
+        "plain": {"type": "fisheye", "position": [0, 0, 5], "look_at": [0, 0, 0]}}})");
+    const auto& cameras = loaded.scene.cameras;
+    const auto& lens = std::get<PerspectiveCamera>(cameras.at(0));
+    EXPECT_EQ(lens.aperture_radius, 0.5f);
+    EXPECT_EQ(lens.focus_distance, 2.0f);
+    EXPECT_EQ(lens.aperture_blades, 6u);
+    EXPECT_EQ(lens.aperture_rotation, 15);
+    const auto& round = std::get<PerspectiveCamera>(cameras.at(1));
+    EXPECT_EQ(round.aperture_radius, 0.25f);
+    EXPECT_FALSE(round.focus_distance);
+    EXPECT_EQ(round.aperture_blades, 0u);
+    const auto& plan = std::get<OrthographicCamera>(cameras.at(2));
+    EXPECT_EQ(plan.height, 12);
+    EXPECT_EQ(plan.up, (Vec3{1, 0, 0}));
+    EXPECT_EQ(std::get<PanoramaCamera>(cameras.at(3)).position, (Vec3{1, 2, 3}));
+    const auto& fish = std::get<FisheyeCamera>(cameras.at(4));
+    EXPECT_EQ(fish.fov, 200);
+    EXPECT_EQ(fish.projection, FisheyeProjection::equisolid);
+    EXPECT_EQ(std::get<FisheyeCamera>(cameras.at(5)).fov, 180);
+    EXPECT_EQ(std::get<FisheyeCamera>(cameras.at(5)).projection, FisheyeProjection::equidistant);
+}
+
 TEST(NativeScene, Textures) {
     const LoadedScene loaded = load_good(scene_with(R"("textures": {
         "grey": {"type": "constant", "color": 0.25}, "red": {"type": "constant", "color": [1, 0.5, 0]},

@@ -30,8 +30,9 @@ Names keys_of(Value object) {
 }
 
 std::vector<ObjectSpec> all_specs() {
-    std::vector<ObjectSpec> all{kSceneSpec,       kRenderSpec,    kFilmSpec,   kFilterSpec, kCameraSpec,
+    std::vector<ObjectSpec> all{kSceneSpec,       kRenderSpec,    kFilmSpec,   kFilterSpec,
                                 kObjectLightSpec, kTransformSpec, kRotateSpec, kLookAtSpec};
+    all.insert(all.end(), std::begin(kCameraSpecs), std::end(kCameraSpecs));
     all.insert(all.end(), std::begin(kTextureSpecs), std::end(kTextureSpecs));
     all.insert(all.end(), std::begin(kMaterialSpecs), std::end(kMaterialSpecs));
     all.insert(all.end(), std::begin(kShapeSpecs), std::end(kShapeSpecs));
@@ -87,6 +88,7 @@ TEST_F(Schema, NamesEachTypeByItsWord) {
             EXPECT_EQ(member(type, "const")->string(), types[i]);
         }
     };
+    check(kCameraSpecs, kCameraTypes);
     check(kTextureSpecs, kTextureTypes);
     check(kMaterialSpecs, kMaterialTypes);
     check(kShapeSpecs, kShapeTypes);
@@ -107,6 +109,7 @@ TEST_F(Schema, ListsTheSameWords) {
     check(property("render", "light_sampling"), names_of<LightSampling>());
     check(property("render", "sampler"), names_of<SamplerKind>());
     check(property("filter", "type"), names_of<FilterKind>());
+    check(property("fisheye_camera", "projection"), kFisheyeProjections);
     check(property("image_texture", "filter"), kTextureFilters);
     check(property("conductor_material", "metal"), metal_names());
     check(definition("wrap"), kWraps);

@@ -49,6 +49,36 @@ TEST(Warp, DiskIsUniform) {
     EXPECT_TRUE(result.passes()) << result;
 }
 
+/// Areas in polar coordinates of the outline: the share of the radius up to the outline, squared, and the place along
+/// the outline, in corners, are both uniform and independent when points are uniform.
+TEST(Warp, PolygonIsUniform) {
+    for (const uint32_t corners : {3u, 4u, 5u, 6u, 9u, 64u}) {
+        const double step = 2 * std::numbers::pi / corners, apothem = std::cos(step / 2);
+        const auto result = equal_bins(16 * 48, corners, [&](Vec2 u) {
+            const warp::DiskPoint p = warp::polygon(u, corners);
+            EXPECT_NEAR(std::sqrt(p.x * p.x + p.y * p.y), p.radius, 1e-15);
+            const double around = turn(p.y, p.x) * corners, side = std::floor(around);
+            const double from_middle = (around - side - 0.5) * step;
+            const double share = p.radius * std::cos(from_middle) / apothem;
+            EXPECT_LT(share, 1);
+            const double along = side + 0.5 + std::tan(from_middle) / std::tan(step / 2) / 2;
+            return cell(share * share, 16) * 48 + cell(along / corners, 48);
+        });
+        EXPECT_TRUE(result.passes()) << corners << " corners: " << result;
+    }
+}
+
+TEST(Warp, PolygonHasItsFirstCornerToTheRight) {
+    // The middle of the square's right side is angle 0; all but half a cell of the way outwards.
+    const warp::DiskPoint corner = warp::polygon({kOneMinusEpsilon, 0.5f}, 5);
+    EXPECT_NEAR(corner.x, 1, 1e-6);
+    EXPECT_NEAR(corner.y, 0, 1e-6);
+    // A quarter of a turn on a square is its second corner.
+    const warp::DiskPoint top = warp::polygon({0.5f, kOneMinusEpsilon}, 4);
+    EXPECT_NEAR(top.x, 0, 1e-6);
+    EXPECT_NEAR(top.y, 1, 1e-6);
+}
+
 TEST(Warp, DiskKeepsNeighboursTogether) {
     // The stretch of Shirley and Chiu's map: 2 across the rings, at most π/2 along them. So points 2^-10 apart stay
     // within 2^-10 · √(2² + (π/2)²) < 2^-10 · 2.6, also over the four seams.

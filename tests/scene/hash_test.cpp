@@ -30,7 +30,7 @@ Scene full_scene() {
     add<ShapeId>(s.shapes, Shape(Disk{}));
     s.instances.push_back({});
     s.lights = {PointLight{}, SpotLight{}, DirectionalLight{}, AreaLight{}, EnvironmentLight{}};
-    s.cameras = {PerspectiveCamera{}};
+    s.cameras = {PerspectiveCamera{}, OrthographicCamera{}, PanoramaCamera{}, FisheyeCamera{}};
     return s;
 }
 
@@ -83,6 +83,15 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).image = ImageId{0}; },
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).rotation = 90; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up.x = 1; },
+        [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_radius = 1; },
+        [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).focus_distance = 1.0f; },
+        [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_blades = 3; },
+        [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_rotation = 3; },
+        [](Scene& s) { std::get<OrthographicCamera>(s.cameras[1]).height = 3; },
+        [](Scene& s) { std::get<OrthographicCamera>(s.cameras[1]).position.x = 3; },
+        [](Scene& s) { std::get<PanoramaCamera>(s.cameras[2]).look_at.x = 3; },
+        [](Scene& s) { std::get<FisheyeCamera>(s.cameras[3]).fov = 3; },
+        [](Scene& s) { std::get<FisheyeCamera>(s.cameras[3]).projection = FisheyeProjection::equisolid; },
         [](Scene& s) { s.lights.pop_back(); },
         [](Scene& s) { std::swap(s.lights[0], s.lights[1]); },
     };

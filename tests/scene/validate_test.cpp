@@ -46,99 +46,118 @@ TEST_P(ValidateFault, IsNamed) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, ValidateFault,
-    testing::Values(Fault{"material 'wood\\x1b': refers to texture 7, but there are 1",
-                          [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
-                    Fault{"the roughness must be between 0 and 1",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, kNan}, true, std::nullopt}};
-                          }},
-                    Fault{"the roughness must be between 0 and 1",
-                          [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).roughness = 1.5f; }},
-                    Fault{"refers to texture 1",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};
-                          }},
-                    Fault{"n must be finite and positive",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{ComplexIndex{{1, 0, 1}, {}}, {}};
-                          }},
-                    Fault{"k must be finite and not negative",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{ComplexIndex{{1, 1, 1}, {-1, 0, 0}}, {}};
-                          }},
-                    Fault{"refers to texture 2",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{2}}, {}};
-                          }},
-                    Fault{"the reflectance at the edge",
-                          [](Scene& s) {
-                              s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{0}, {kInf, 0, 0}}, {}};
-                          }},
-                    Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
-                    Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
-                    Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},
-                    Fault{"mesh 0: an index refers to a vertex", [](Scene& s) { s.meshes[0].indices[1] = 3; }},
-                    Fault{"multiple of three", [](Scene& s) { s.meshes[0].indices.push_back(0); }},
-                    Fault{"one normal per position", [](Scene& s) { s.meshes[0].normals.resize(2); }},
-                    Fault{"one uv per position", [](Scene& s) { s.meshes[0].uvs.resize(4); }},
-                    Fault{"not finite or beyond 1e15", [](Scene& s) { s.meshes[0].positions[0].x = 2e15f; }},
-                    Fault{"radius must be positive",
-                          [](Scene& s) {
-                              s.shapes[1] = Sphere{{}, 0};
-                          }},
-                    Fault{"radius must be positive",
-                          [](Scene& s) {
-                              s.shapes[1] = Sphere{{}, kNan};
-                          }},
-                    Fault{"centre must be finite",
-                          [](Scene& s) {
-                              s.shapes[1] = Rectangle{{kInf, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-                          }},
-                    Fault{"normal must be finite and not zero",
-                          [](Scene& s) {
-                              s.shapes[1] = Disk{{}, {0, 0, 0}, 1};
-                          }},
-                    Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
-                    Fault{"beyond 1e30", [](Scene& s) { s.instances[0].world_from_object = scaling(1e31, 1, 1); }},
-                    Fault{"singular or not finite",
-                          [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
-                    Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
-                    Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
-                    Fault{"not negative",
-                          [](Scene& s) {
-                              s.textures[0] = ConstantTexture{{-1, 0, 0}};
-                          }},
-                    Fault{"refers to image 0", [](Scene& s) { s.textures[0] = ImageTexture{}; }},
-                    Fault{"size that its header says",
-                          [](Scene& s) {
-                              s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)});
-                          }},
-                    Fault{"light 0: the intensity",
-                          [](Scene& s) {
-                              s.lights[0] = PointLight{{}, {kNan, 0, 0}};
-                          }},
-                    Fault{"inner angle",
-                          [](Scene& s) {
-                              s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45};
-                          }},
-                    Fault{"outer angle",
-                          [](Scene& s) {
-                              s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181};
-                          }},
-                    Fault{"direction must be finite and not zero",
-                          [](Scene& s) {
-                              s.lights[0] = DirectionalLight{{0, 0, 0}};
-                          }},
-                    Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
-                    Fault{"light samples",
-                          [](Scene& s) {
-                              s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0};
-                          }},
-                    Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
-                    Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
-                    Fault{"camera 0: the field of view",
-                          [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
-                    Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
+    testing::Values(
+        Fault{"material 'wood\\x1b': refers to texture 7, but there are 1",
+              [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).reflectance = TextureId{7}; }},
+        Fault{"the roughness must be between 0 and 1",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, kNan}, true, std::nullopt}};
+              }},
+        Fault{"the roughness must be between 0 and 1",
+              [](Scene& s) { std::get<DiffuseMaterial>(s.materials[0]).roughness = 1.5f; }},
+        Fault{"refers to texture 1",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};
+              }},
+        Fault{"n must be finite and positive",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{ComplexIndex{{1, 0, 1}, {}}, {}};
+              }},
+        Fault{"k must be finite and not negative",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{ComplexIndex{{1, 1, 1}, {-1, 0, 0}}, {}};
+              }},
+        Fault{"refers to texture 2",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{2}}, {}};
+              }},
+        Fault{"the reflectance at the edge",
+              [](Scene& s) {
+                  s.materials[0] = ConductorMaterial{SchlickReflectance{TextureId{0}, {kInf, 0, 0}}, {}};
+              }},
+        Fault{"object 0: refers to shape 9", [](Scene& s) { s.instances[0].shape = ShapeId{9}; }},
+        Fault{"object 0: refers to material 3", [](Scene& s) { s.instances[0].material = MaterialId{3}; }},
+        Fault{"shape 0: refers to mesh 1", [](Scene& s) { s.shapes[0] = MeshId{1}; }},
+        Fault{"mesh 0: an index refers to a vertex", [](Scene& s) { s.meshes[0].indices[1] = 3; }},
+        Fault{"multiple of three", [](Scene& s) { s.meshes[0].indices.push_back(0); }},
+        Fault{"one normal per position", [](Scene& s) { s.meshes[0].normals.resize(2); }},
+        Fault{"one uv per position", [](Scene& s) { s.meshes[0].uvs.resize(4); }},
+        Fault{"not finite or beyond 1e15", [](Scene& s) { s.meshes[0].positions[0].x = 2e15f; }},
+        Fault{"radius must be positive",
+              [](Scene& s) {
+                  s.shapes[1] = Sphere{{}, 0};
+              }},
+        Fault{"radius must be positive",
+              [](Scene& s) {
+                  s.shapes[1] = Sphere{{}, kNan};
+              }},
+        Fault{"centre must be finite",
+              [](Scene& s) {
+                  s.shapes[1] = Rectangle{{kInf, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+              }},
+        Fault{"normal must be finite and not zero",
+              [](Scene& s) {
+                  s.shapes[1] = Disk{{}, {0, 0, 0}, 1};
+              }},
+        Fault{"singular", [](Scene& s) { s.instances[0].world_from_object = scaling(1, 0, 1); }},
+        Fault{"beyond 1e30", [](Scene& s) { s.instances[0].world_from_object = scaling(1e31, 1, 1); }},
+        Fault{"singular or not finite", [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
+        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
+        Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
+        Fault{"not negative",
+              [](Scene& s) {
+                  s.textures[0] = ConstantTexture{{-1, 0, 0}};
+              }},
+        Fault{"refers to image 0", [](Scene& s) { s.textures[0] = ImageTexture{}; }},
+        Fault{"size that its header says",
+              [](Scene& s) {
+                  s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)});
+              }},
+        Fault{"light 0: the intensity",
+              [](Scene& s) {
+                  s.lights[0] = PointLight{{}, {kNan, 0, 0}};
+              }},
+        Fault{"inner angle",
+              [](Scene& s) {
+                  s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45};
+              }},
+        Fault{"outer angle",
+              [](Scene& s) {
+                  s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181};
+              }},
+        Fault{"direction must be finite and not zero",
+              [](Scene& s) {
+                  s.lights[0] = DirectionalLight{{0, 0, 0}};
+              }},
+        Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
+        Fault{"light samples",
+              [](Scene& s) {
+                  s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0};
+              }},
+        Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
+        Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
+        Fault{"camera 0: the field of view",
+              [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
+        Fault{"radius must be between 0",
+              [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_radius = -1; }},
+        Fault{"focus distance", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).focus_distance = 0.0f; }},
+        Fault{"3 to 64 blades", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_blades = 2; }},
+        Fault{"3 to 64 blades", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_blades = 65; }},
+        Fault{"rotation must be finite",
+              [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_rotation = kNan; }},
+        Fault{"height must be positive",
+              [](Scene& s) {
+                  s.cameras[0] = OrthographicCamera{{}, {0, 0, 1}, {0, 1, 0}, 0};
+              }},
+        Fault{"position must be finite",
+              [](Scene& s) {
+                  s.cameras[0] = PanoramaCamera{{kNan, 0, 0}};
+              }},
+        Fault{"(0, 360]",
+              [](Scene& s) {
+                  s.cameras[0] = FisheyeCamera{{}, {0, 0, 1}, {0, 1, 0}, 361};
+              }},
+        Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
 
 TEST(Validate, AcceptsAGoodScene) {
     const Status status = validate(good_scene());

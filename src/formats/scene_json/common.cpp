@@ -47,14 +47,15 @@ Filter read_filter(const Source& source, Value value) {
     return filter;
 }
 
-void check_camera(ObjectReader& camera, const PerspectiveCamera& result, std::string_view up_key) {
+void check_camera(ObjectReader& camera, Vec3 position, Vec3 look_at, Vec3 up_vector, std::string_view up_key) {
     const Source& source = camera.source();
-    const Vec3d view = Vec3d(result.look_at) - Vec3d(result.position);
-    const Vec3d up(result.up);
-    const size_t look_at = camera.find("look_at") ? camera.find("look_at")->offset() : camera.offset();
-    const size_t up_offset = camera.find(up_key) ? camera.find(up_key)->offset() : look_at;
+    const Vec3d view = Vec3d(look_at) - Vec3d(position);
+    const Vec3d up(up_vector);
+    const size_t look_at_offset = camera.find("look_at") ? camera.find("look_at")->offset() : camera.offset();
+    const size_t up_offset = camera.find(up_key) ? camera.find(up_key)->offset() : look_at_offset;
     if (!(length(view) > 0))
-        source.fail(look_at, "the camera's 'look_at' is equal to its 'position': there is no direction to look in");
+        source.fail(look_at_offset,
+                    "the camera's 'look_at' is equal to its 'position': there is no direction to look in");
     if (!(length(up) > 0)) source.fail(up_offset, quoted(up_key) + " must not be the zero vector");
     if (!(length(cross(normalize(view), normalize(up))) > 1e-6))
         source.fail(up_offset, quoted(up_key) + " is parallel to the camera's view",

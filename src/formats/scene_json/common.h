@@ -71,7 +71,7 @@ void read_resolution(ObjectReader& film, RenderSettings& settings);
 Filter read_filter(const Source& source, Value value);
 
 /// Fails at the keys that name them when the camera cannot see: position equal to look_at, up along the view.
-void check_camera(ObjectReader& camera, const PerspectiveCamera& result, std::string_view up_key);
+void check_camera(ObjectReader& camera, Vec3 position, Vec3 look_at, Vec3 up, std::string_view up_key);
 
 inline constexpr Range kFieldOfView{0, 180, true, true};
 inline constexpr Range kEta{1e-3, 1e3};

@@ -137,7 +137,7 @@ void CourseLoader::read_camera(Value value) {
     camera.up = reader.vec3_or("ref_up", camera.up);
     camera.vertical_fov = reader.number("fov", kFieldOfView);
     reader.number_or("focal_length", 1, json::kLength);  // does not change a pinhole's picture
-    check_camera(reader, camera, "ref_up");
+    check_camera(reader, camera.position, camera.look_at, camera.up, "ref_up");
     reader.finish();
     assets_.add_camera(camera, "camera");
 }

@@ -18,7 +18,12 @@ inline constexpr Key kRender[] = {"integrator",     "max_depth",      "spp",   "
                                   "light_sampling", "roulette_depth", "clamp", "ao_distance"};
 inline constexpr Key kFilm[] = {"resolution", "filter", "crop"};
 inline constexpr Key kFilter[] = {"type", "radius"};
-inline constexpr Key kCamera[] = {"type", "position", "look_at", "up", "vertical_fov"};
+inline constexpr Key kPerspectiveCamera[] = {
+    "type",           "position",        "look_at",          "up", "vertical_fov", "aperture_radius",
+    "focus_distance", "aperture_blades", "aperture_rotation"};
+inline constexpr Key kOrthographicCamera[] = {"type", "position", "look_at", "up", "height"};
+inline constexpr Key kPanoramaCamera[] = {"type", "position", "look_at", "up"};
+inline constexpr Key kFisheyeCamera[] = {"type", "position", "look_at", "up", "fov", "projection"};
 
 inline constexpr Key kConstantTexture[] = {"type", "color"};
 inline constexpr Key kImageTexture[] = {"type", "path", "color_space", "wrap", "filter", "scale", "offset"};
@@ -65,7 +70,10 @@ inline constexpr ObjectSpec kSceneSpec{"scene", keys::kScene};
 inline constexpr ObjectSpec kRenderSpec{"render", keys::kRender};
 inline constexpr ObjectSpec kFilmSpec{"film", keys::kFilm};
 inline constexpr ObjectSpec kFilterSpec{"filter", keys::kFilter};
-inline constexpr ObjectSpec kCameraSpec{"camera", keys::kCamera};
+inline constexpr ObjectSpec kCameraSpecs[] = {{"perspective_camera", keys::kPerspectiveCamera},
+                                              {"orthographic_camera", keys::kOrthographicCamera},
+                                              {"panorama_camera", keys::kPanoramaCamera},
+                                              {"fisheye_camera", keys::kFisheyeCamera}};
 inline constexpr ObjectSpec kTextureSpecs[] = {{"constant_texture", keys::kConstantTexture},
                                                {"image_texture", keys::kImageTexture},
                                                {"checkerboard_texture", keys::kCheckerboardTexture}};
@@ -100,7 +108,8 @@ inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle"
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};
 
-inline constexpr std::string_view kCameraTypes[] = {"perspective"};
+inline constexpr std::string_view kCameraTypes[] = {"perspective", "orthographic", "panorama", "fisheye"};
+inline constexpr std::string_view kFisheyeProjections[] = {"equidistant", "equisolid"};
 inline constexpr std::string_view kColorSpaces[] = {"linear", "srgb"};
 inline constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror", "black"};
 inline constexpr std::string_view kTextureFilters[] = {"nearest", "bilinear"};

@@ -67,17 +67,60 @@ void NativeLoader::read_cameras(ObjectReader& reader) {
     for (const Member member : many->members()) read_camera(member.value, std::string(member.key));
 }
 
-void NativeLoader::read_camera(Value value, std::string name) {
-    ObjectReader reader(source_, value, kCameraSpec, "the camera");
-    reader.choice_or("type", 0, kCameraTypes);
-    PerspectiveCamera camera;
+namespace {
+
+void read_kind(ObjectReader& reader, PerspectiveCamera& camera) {
+    camera.vertical_fov = reader.number_or("vertical_fov", camera.vertical_fov, kFieldOfView);
+    camera.aperture_radius = reader.number_or("aperture_radius", 0, Range{0, json::kMaxLength});
+    // What shapes a lens has no effect on a pinhole: asked for only there, so that finish() says so.
+    if (!(camera.aperture_radius > 0)) return;
+    if (reader.find("focus_distance")) camera.focus_distance = reader.number("focus_distance", json::kLength);
+    if (const auto blades = reader.find("aperture_blades"))
+        camera.aperture_blades = static_cast<uint32_t>(
+            json::read_integer(reader.source(), *blades, "'aperture_blades'", kMinApertureBlades, kMaxApertureBlades));
+    if (camera.aperture_blades > 0)
+        camera.aperture_rotation = reader.number_or("aperture_rotation", 0, json::kAnyAngle);
+}
+void read_kind(ObjectReader& reader, OrthographicCamera& camera) {
+    camera.height = reader.number_or("height", camera.height, json::kLength);
+}
+void read_kind(ObjectReader&, PanoramaCamera&) {}
+void read_kind(ObjectReader& reader, FisheyeCamera& camera) {
+    camera.fov = reader.number_or("fov", camera.fov, Range{0, 360, true, false});
+    camera.projection = static_cast<FisheyeProjection>(reader.choice_or("projection", 0, kFisheyeProjections));
+}
+
+template <class C>
+C read_camera_of(ObjectReader& reader) {
+    C camera;
     camera.position = reader.vec3("position");
     camera.look_at = reader.vec3("look_at");
     camera.up = reader.vec3_or("up", camera.up);
-    camera.vertical_fov = reader.number_or("vertical_fov", camera.vertical_fov, kFieldOfView);
-    check_camera(reader, camera, "up");
+    read_kind(reader, camera);
+    check_camera(reader, camera.position, camera.look_at, camera.up, "up");
     reader.finish();
-    assets_.add_camera(camera, std::move(name));
+    return camera;
+}
+
+/// The value of "type" as an index into kCameraTypes, 0 where it is missing.
+size_t camera_type(const Source& source, Value camera) {
+    if (!camera.is(Kind::object)) return 0;
+    for (const Member member : camera.members())
+        if (member.key == "type") return json::read_choice(source, member.value, "'type'", kCameraTypes);
+    return 0;
+}
+
+}  // namespace
+
+void NativeLoader::read_camera(Value value, std::string name) {
+    const size_t type = camera_type(source_, value);
+    ObjectReader reader(source_, value, kCameraSpecs[type], "the camera");
+    reader.find("type");
+    const auto add = [&](const Camera& camera) { assets_.add_camera(camera, std::move(name)); };
+    if (type == 0) return add(read_camera_of<PerspectiveCamera>(reader));
+    if (type == 1) return add(read_camera_of<OrthographicCamera>(reader));
+    if (type == 2) return add(read_camera_of<PanoramaCamera>(reader));
+    add(read_camera_of<FisheyeCamera>(reader));
 }
 
 void NativeLoader::read_render(Value value) {
