@@ -72,6 +72,7 @@ void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s
     if (o.clamp) s.clamp = *o.clamp;
     if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
     if (!o.light_sampling.empty()) s.light_sampling = *find_name<LightSampling>(o.light_sampling);
+    if (!o.light_choice.empty()) s.light_choice = *find_name<LightChoice>(o.light_choice);
     if (!o.sampler.empty()) s.sampler = *find_name<SamplerKind>(o.sampler);
     if (said.width) s.width = *said.width, s.height = *said.height;
     if (said.whole) s.crop.reset();
@@ -172,6 +173,7 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     word("--integrator", o.integrator);
     number("--max-depth", o.max_depth);
     word("--light-sampling", o.light_sampling);
+    word("--light-choice", o.light_choice);
     number("--roulette-depth", o.roulette_depth);
     number("--clamp", o.clamp);
     number("--ao-distance", o.ao_distance);
@@ -201,6 +203,9 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
         ->group("Picture");
     add_choice(c, "--light-sampling", options.light_sampling, names_of<LightSampling>(),
                "How path finds lights: mis (least noise), or for comparisons light or bsdf alone")
+        ->group("Picture");
+    add_choice(c, "--light-choice", options.light_choice, names_of<LightChoice>(),
+               "How path chooses one of many lights: bvh (by what it may bring to the point), by its power, or uniform")
         ->group("Picture");
     add_count<uint32_t>(c, "--roulette-depth", options.roulette_depth, 0, kMaxDepth,
                         "Bounces of path before Russian roulette begins to end paths; the mean stays")

@@ -16,7 +16,7 @@ struct SettingsOptions {
     std::optional<uint64_t> spp, seed;
     std::optional<uint32_t> max_depth, roulette_depth;
     std::optional<float> clamp, ao_distance;
-    std::string size, camera, integrator, light_sampling, filter, sampler, crop;
+    std::string size, camera, integrator, light_sampling, light_choice, filter, sampler, crop;
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);
 

@@ -13,6 +13,9 @@ enum class IntegratorKind : uint8_t { path, direct, ao, normals, albedo, uv, dep
 /// How `path` finds lights with an extent: by directions that they are asked for and directions that surfaces prefer,
 /// put together by multiple importance sampling, or by one of the two alone (for comparisons; the mean is the same).
 enum class LightSampling : uint8_t { mis, light, bsdf };
+/// How `path` chooses one of many lights: by what each may bring to a point, by their flux, or all alike. The mean is
+/// the same.
+enum class LightChoice : uint8_t { bvh, power, uniform };
 enum class SamplerKind : uint8_t { sobol, independent };
 enum class FilterKind : uint8_t { box, tent, gaussian, mitchell };
 
@@ -40,6 +43,7 @@ struct RenderSettings {
     SamplerKind sampler = SamplerKind::sobol;
     uint64_t seed = 0;
     LightSampling light_sampling = LightSampling::mis;
+    LightChoice light_choice = LightChoice::bvh;
     uint32_t roulette_depth = 4;  ///< bounces that Russian roulette lets pass; from max_depth on there is none
     /// Most that one connection to a light adds as indirect light (`path`; 0: no limit). Makes the picture biased.
     float clamp = 0;

@@ -19,6 +19,7 @@ namespace detail {
 inline constexpr std::array<std::string_view, 8> kIntegratorNames{"path",   "direct", "ao",    "normals",
                                                                   "albedo", "uv",     "depth", "primitive"};
 inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "light", "bsdf"};
+inline constexpr std::array<std::string_view, 3> kLightChoiceNames{"bvh", "power", "uniform"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
 inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
@@ -33,6 +34,10 @@ constexpr std::span<const std::string_view> names_of<IntegratorKind>() noexcept 
 template <>
 constexpr std::span<const std::string_view> names_of<LightSampling>() noexcept {
     return detail::kLightSamplingNames;
+}
+template <>
+constexpr std::span<const std::string_view> names_of<LightChoice>() noexcept {
+    return detail::kLightChoiceNames;
 }
 template <>
 constexpr std::span<const std::string_view> names_of<SamplerKind>() noexcept {

@@ -24,12 +24,11 @@ private:
         const Vec3 wo = -ray.d;
         add_emission(path, emitted_radiance(shading_, point, wo));
         if (depth >= c_.settings.max_depth) return;
-        const Bsdf bsdf = make_bsdf(shading_, point);
-        if (is_specular(bsdf))
-            follow(id, point, bsdf, wo, depth);
+        const Vertex vertex = vertex_at(point, wo);
+        if (is_specular(vertex.bsdf))
+            follow(id, point, vertex.bsdf, wo, depth);
         else
-            sample_all_lights(id, {facing(point, wo), bsdf, wo}, kInfinity,
-                              [](uint32_t, float, float) { return 1.0f; });
+            sample_all_lights(id, vertex, kInfinity, [](uint32_t, float, float) { return 1.0f; });
     }
 
     void add_emission(Path& path, Rgb radiance) noexcept {

@@ -53,7 +53,7 @@ uint64_t table_bytes(const Scene& scene, const Light& light) {
         if (index(shape) >= scene.shapes.size()) return 0;
         const auto* mesh = std::get_if<MeshId>(&scene.shapes[index(shape)]);
         if (!mesh || index(*mesh) >= scene.meshes.size()) return 0;
-        return scene.meshes[index(*mesh)].indices.size() / 3 * sizeof(double);
+        return scene.meshes[index(*mesh)].indices.size() / 3 * LightTree::kBytesPerLight;
     }
     if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky && sky->image) {
         if (index(*sky->image) >= scene.images.size()) return 0;
@@ -81,9 +81,10 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
     const uint64_t triangle_build = high_quality ? kTriangleBuildBytesHighQuality
                                     : compact    ? kTriangleBuildBytesCompact
                                                  : kTriangleBuildBytes;
-    out.hierarchy = triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
-                    instances * sizeof(ShadingScene::InstanceData) +
-                    scene.lights.size() * sizeof(ShadingScene::LightData);
+    out.hierarchy =
+        triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
+        instances * sizeof(ShadingScene::InstanceData) +
+        scene.lights.size() * (sizeof(ShadingScene::LightData) + LightTree::kBytesPerLight + sizeof(double));
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
     out.build = triangles * triangle_build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
     out.picture = picture_bytes(settings, execution);

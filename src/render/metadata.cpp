@@ -19,6 +19,7 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     m["steradian:max_depth"] = fmt::format("{}", s.max_depth);
     if (s.integrator == IntegratorKind::path) {
         m["steradian:light_sampling"] = name_of(s.light_sampling);
+        m["steradian:light_choice"] = name_of(s.light_choice);
         m["steradian:roulette_depth"] = fmt::format("{}", s.roulette_depth);
         if (s.clamp > 0) m["steradian:clamp"] = fmt::format("{} (biased: indirect light was limited)", s.clamp);
     }

@@ -10,19 +10,6 @@ namespace {
 /// at every later vertex, one light is chosen.
 constexpr uint32_t kFewLights = 16;
 
-/// Choosing one of n with 32 uniform bits. Where n is no power of two some have one of the 2^32 values more than
-/// others; that is in their probability.
-struct LightChoice {
-    uint64_t lights;
-
-    uint32_t chosen(uint32_t bits) const { return static_cast<uint32_t>((bits * lights) >> 32); }
-    double probability(uint32_t light) const { return double(first(light + 1) - first(light)) * 0x1p-32; }
-
-private:
-    /// The smallest number that chooses `light`.
-    uint64_t first(uint64_t light) const { return ((light << 32) + lights - 1) / lights; }
-};
-
 /// a² / (a² + b²) (Veach 1997, section 9.2.4) for the strategy with a, against another one with b: densities times
 /// numbers of samples, not both 0.
 float power_heuristic(double a, double b) {
@@ -34,7 +21,8 @@ class PathIntegrator final : public WavefrontIntegrator {
 public:
     PathIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
         : WavefrontIntegrator(context, max_tile_pixels),
-          lights_{shading_.scene.lights.size()},
+          lights_(shading_.light_selection),
+          choice_(c_.settings.light_choice),
           limit_(c_.settings.clamp > 0 ? c_.settings.clamp : kInfinity) {
         states_.resize(capacity(max_tile_pixels));
     }
@@ -68,7 +56,7 @@ private:
         const uint32_t light = shading_.instances[point.instance].area_light;
         add_emission(id, emitted_radiance(shading_, point, wo), light, ray.d, &point, depth);
         if (depth >= c_.settings.max_depth) return;
-        const Vertex vertex{facing(point, wo), make_bsdf(shading_, point), wo};
+        const Vertex vertex = vertex_at(point, wo);
         if (!is_specular(vertex.bsdf)) sample_lights(id, vertex, depth);
         scatter(id, point, vertex, depth);
     }
@@ -92,9 +80,9 @@ private:
     }
 
     void sample_lights(uint32_t id, const Vertex& at, uint32_t depth) noexcept {
-        if (lights_.lights == 0) return;
+        if (lights_.lights() == 0) return;
         State& state = states_[id];
-        state.all_lights = state.direct_bounces == ~0u && lights_.lights <= kFewLights;
+        state.all_lights = state.direct_bounces == ~0u && lights_.lights() <= kFewLights;
         if (state.direct_bounces == ~0u) state.direct_bounces = depth + 1;
         const float limit = limit_of(state, depth + 1);
         if (state.all_lights) {
@@ -107,10 +95,12 @@ private:
         const uint32_t dimension = kOneLightDimension + 4 * depth;
         const Vec2 u = c_.sampler.get_2d(path.key, dimension);
         const uint32_t part = c_.sampler.bits(path.key, dimension + 2);
-        const uint32_t light = lights_.chosen(c_.sampler.bits(path.key, dimension + 3));
-        const double probability = lights_.probability(light);
+        const uint32_t bits = c_.sampler.bits(path.key, dimension + 3);
+        const std::optional<ChosenLight> chosen = lights_.choose(choice_, receiver_at(at.from), bits);
+        if (!chosen) return;
+        const double probability = chosen->probability;
         sample_towards(
-            id, at, light, part, u, path.throughput / static_cast<float>(probability), limit,
+            id, at, chosen->light, part, u, path.throughput / static_cast<float>(probability), limit,
             [&](float light_pdf, float bsdf_pdf) { return light_weight(light_pdf * probability, bsdf_pdf); });
     }
 
@@ -140,7 +130,8 @@ private:
 
     /// How many samples a vertex takes of `light` on average.
     double expected_samples(const State& state, uint32_t light) const noexcept {
-        return state.all_lights ? light_sample_count(shading_, light) : lights_.probability(light);
+        return state.all_lights ? light_sample_count(shading_, light)
+                                : lights_.probability(choice_, receiver_at(state.from), light);
     }
 
     /// The weight of a light sample. A light without a density cannot be found by the BSDF.
@@ -175,7 +166,8 @@ private:
         return bounces > state.direct_bounces ? limit_ : kInfinity;
     }
 
-    const LightChoice lights_;
+    const LightSelection& lights_;
+    const LightChoice choice_;
     const float limit_;  ///< for contributions that are not direct light
     std::vector<State> states_;
 };

@@ -72,6 +72,11 @@ protected:
         Bsdf bsdf;
         Vec3 wo;
     };
+    Vertex vertex_at(const SurfacePoint& point, Vec3 wo) const noexcept {
+        Vertex out{facing(point, wo), make_bsdf(shading_, point), wo};
+        out.from.both_sides = !only_reflects(out.bsdf);
+        return out;
+    }
     /// One direction towards one light. `scale` stands for the path's throughput over the expected number of samples,
     /// `limit` is for what comes of it (see clamped()), and weight(light's density, BSDF's) gives the sample's weight.
     template <class Weight>

@@ -30,6 +30,10 @@ bool is_specular(const Bsdf& bsdf) noexcept {
     return std::visit([](const auto& lobe) { return lobe_is_specular(lobe); }, bsdf.lobe);
 }
 
+bool only_reflects(const Bsdf& bsdf) noexcept {
+    return std::visit([](const auto& lobe) { return lobe_only_reflects(lobe); }, bsdf.lobe);
+}
+
 BsdfEval eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) noexcept {
     const LobeGeometry g{bsdf.ng, bsdf.frame};
     return std::visit([&](const auto& lobe) { return eval_lobe(lobe, g, wo, wi); }, bsdf.lobe);

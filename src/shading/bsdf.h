@@ -76,6 +76,8 @@ struct BsdfSample {
 Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point) noexcept;
 /// All lobes are perfectly specular: light sampling is of no use.
 bool is_specular(const Bsdf& bsdf) noexcept;
+/// Light from behind the shading normal (seen from wo) brings nothing: choosing lights need not think of it.
+bool only_reflects(const Bsdf& bsdf) noexcept;
 BsdfEval eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) noexcept;
 /// Nothing when no light can leave towards wo (the back of a one-sided surface, say).
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float uc, Vec2 u) noexcept;

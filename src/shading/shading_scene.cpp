@@ -38,27 +38,24 @@ ShadingScene::TransformData transform_data(const Affine& m) {
 /// Turns the surface of an area light into world space. The fields that the light's kind of shape needs are filled in.
 class EmitterBuilder {
 public:
-    EmitterBuilder(const ShadingScene& scene, InstanceId id, ShadingScene::LightData& out)
+    EmitterBuilder(const ShadingScene& scene, InstanceId id, bool two_sided, ShadingScene::LightData& out)
         : scene_(scene),
           id_(id),
+          two_sided_(two_sided),
           instance_(scene.scene.instances[index(id)]),
           data_(scene.transform_of(index(id))),
           transform_(instance_.world_from_object),
           out_(out) {}
 
     void operator()(MeshId id) {
-        const Mesh& mesh = scene_.scene.meshes[index(id)];
-        const auto triangles = static_cast<uint32_t>(mesh.indices.size() / 3);
-        MeshEmitter emitter{id_, id, {}};
-        emitter.cumulative_area.reserve(triangles);
+        std::vector<LightBounds> triangles;
+        triangles.reserve(scene_.scene.meshes[index(id)].indices.size() / 3);
         double total = 0;
-        for (uint32_t i = 0; i < triangles; ++i) {
-            const EmitterTriangle object = object_triangle(mesh, i);
-            const EmitterTriangle world = data_.identity ? object : world_triangle(transform_, object);
-            total += length(world.scaled_normal()) / 2;
-            emitter.cumulative_area.push_back(total);
-        }
-        finish(std::move(emitter), total);
+        each_triangle_bounds(scene_, id_, id, two_sided_, [&](const LightBounds& triangle) {
+            triangles.push_back(triangle);
+            total += triangle.strength;
+        });
+        finish(MeshEmitter{id_, id, LightTree(triangles)}, total);
     }
 
     void operator()(const Sphere& sphere) {
@@ -152,6 +149,7 @@ private:
 
     const ShadingScene& scene_;
     InstanceId id_;
+    bool two_sided_;
     const Instance& instance_;
     const ShadingScene::TransformData& data_;
     const Affine& transform_;
@@ -179,7 +177,7 @@ public:
     void operator()(const AreaLight& light) {
         scene_.instances[index(light.instance)].area_light = current();
         const ShapeId shape = scene_.scene.instances[index(light.instance)].shape;
-        std::visit(EmitterBuilder(scene_, light.instance, data()), scene_.scene.shapes[index(shape)]);
+        std::visit(EmitterBuilder(scene_, light.instance, light.two_sided, data()), scene_.scene.shapes[index(shape)]);
     }
     void operator()(const EnvironmentLight& light) {
         scene_.environment_light = current();
@@ -272,6 +270,7 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
         }
         LightBuilder lights(out, diagnostics);
         for (const Light& light : out.scene.lights) lights.add(light);
+        out.light_selection = LightSelection(out);
         warn_about_texels(out.scene, diagnostics);
         return out;
     } catch (const std::bad_alloc&) {

@@ -9,6 +9,7 @@
 
 #include "math/transform.h"
 #include "shading/light/emitter.h"
+#include "shading/light_selection.h"
 #include "steradian/result.h"
 #include "steradian/scene.h"
 
@@ -45,6 +46,7 @@ struct ShadingScene {
         double cos_inner = 1, cos_outer = 1;  ///< for spots
     };
     std::vector<LightData> lights;
+    LightSelection light_selection;  ///< how one of them is chosen
 
     /// What follows from a material alone; empty where its kind needs nothing.
     struct MaterialData {

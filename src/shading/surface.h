@@ -3,6 +3,7 @@
 
 #include "math/ray.h"
 #include "math/vector.h"
+#include "shading/light_bounds.h"
 #include "steradian/scene.h"
 
 namespace steradian {
@@ -17,6 +18,7 @@ struct SurfacePoint {
     Vec2 uv;
     uint32_t instance = kNoHit;
     uint32_t prim = kNoHit;
+    bool both_sides = false;  ///< light from behind ns counts as well: where lights are chosen by what they may bring
 };
 
 /// `hit` must be of `ray`. uv of meshes without any are (hit.u, hit.v); of disks as of the rectangle around them.
@@ -26,6 +28,9 @@ SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hi
 /// The same point with ng and ns turned to the side that wo points to: what is lit when it is seen from there.
 /// sample_light and pdf_light take it so (a constant environment is sampled about ns).
 SurfacePoint facing(SurfacePoint point, Vec3 wo) noexcept;
+
+/// What choosing a light needs to know of a point that is turned so.
+inline LightReceiver receiver_at(const SurfacePoint& from) noexcept { return {from.p, from.ns, from.both_sides}; }
 
 /// In which direction u of `point` grows on the surface, in world space, of any length: what rough surfaces with a
 /// grain are turned by. Zero where the texture coordinates do not say. Of meshes without any: along the first edge.

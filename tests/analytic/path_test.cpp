@@ -59,6 +59,32 @@ TEST(Paths, BsdfSamplesAloneAgreeWithBoth) {
     expect_same_means(scene, both, bsdf);
 }
 
+/// The room with more lights than are all sampled at the first vertex: bright and weak ones, far ones, some inside the
+/// walls' corners, some that face away, and a mesh.
+SceneText room_with_many_lights() {
+    SceneText s = room();
+    for (int i = 0; i < 8; ++i) {
+        const double x = -0.9 + 0.25 * i, brightness = 0.05 * (1 << (i % 4));
+        s.light(point_light({x, 0.1 + 0.2 * i, -0.9}, brightness));
+        s.object(sphere({x, 1.8, -0.7}, 0.03 + 0.01 * (i % 3), "black").set("light", emission({1, 3.0 * (i % 2), 2})));
+        s.object(disk({x, 0.01, 0.8}, {0.3 * x, i % 3 ? 1.0 : -1.0, 0.1}, 0.05, "white")
+                     .set("light", emission({3, 2, 0.5 * i}, i % 2 == 0)));
+    }
+    return s.depth(3);
+}
+
+TEST(Paths, EveryWayToChooseALightHasTheSameMean) {
+    const PreparedCase scene(room_with_many_lights().str(), {});
+    RenderSettings bvh = independent(scene), power = bvh, uniform = bvh;
+    power.light_choice = LightChoice::power;
+    uniform.light_choice = LightChoice::uniform;
+    expect_same_means(scene, bvh, uniform);
+    expect_same_means(scene, power, uniform);
+    RenderSettings light = bvh;
+    light.light_sampling = LightSampling::light;
+    expect_same_means(scene, bvh, light);
+}
+
 TEST(Paths, RussianRouletteKeepsTheMean) {
     const PreparedCase scene(room().str(), {});
     RenderSettings often = independent(scene), never = often;

@@ -31,11 +31,12 @@ TEST(NativeScene, SilenceMeansTheDefaults) {
 
 TEST(NativeScene, RenderAndFilm) {
     const LoadedScene loaded = load_good(scene_with(R"("$schema": "x", "comment": "y",
-        "render": {"integrator": "direct", "light_sampling": "light", "roulette_depth": 7, "clamp": 2.5, "ao_distance": 0.25, "max_depth": 0, "spp": 1e3, "sampler": "independent", "seed": 18446744073709551615, "camera": "camera"},
+        "render": {"integrator": "direct", "light_sampling": "light", "light_choice": "power", "roulette_depth": 7, "clamp": 2.5, "ao_distance": 0.25, "max_depth": 0, "spp": 1e3, "sampler": "independent", "seed": 18446744073709551615, "camera": "camera"},
         "film": {"resolution": [640, 360], "filter": {"type": "mitchell"}, "crop": [10, 20, 640, 30]})"));
     const RenderSettings& s = loaded.settings;
     EXPECT_EQ(s.integrator, IntegratorKind::direct);
     EXPECT_EQ(s.light_sampling, LightSampling::light);
+    EXPECT_EQ(s.light_choice, LightChoice::power);
     EXPECT_EQ(s.roulette_depth, 7u);
     EXPECT_EQ(s.clamp, 2.5f);
     EXPECT_EQ(s.ao_distance, 0.25f);

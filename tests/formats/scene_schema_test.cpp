@@ -107,6 +107,7 @@ TEST_F(Schema, ListsTheSameWords) {
     };
     check(property("render", "integrator"), names_of<IntegratorKind>());
     check(property("render", "light_sampling"), names_of<LightSampling>());
+    check(property("render", "light_choice"), names_of<LightChoice>());
     check(property("render", "sampler"), names_of<SamplerKind>());
     check(property("filter", "type"), names_of<FilterKind>());
     check(property("fisheye_camera", "projection"), kFisheyeProjections);

@@ -130,6 +130,7 @@ void NativeLoader::read_render(Value value) {
         render.choice_or("integrator", static_cast<size_t>(settings.integrator), names_of<IntegratorKind>()));
     settings.light_sampling =
         static_cast<LightSampling>(render.choice_or("light_sampling", 0, names_of<LightSampling>()));
+    settings.light_choice = static_cast<LightChoice>(render.choice_or("light_choice", 0, names_of<LightChoice>()));
     settings.roulette_depth =
         static_cast<uint32_t>(render.integer_or("roulette_depth", settings.roulette_depth, 0, kMaxDepth));
     settings.clamp = render.number_or("clamp", settings.clamp, Range{0, kMaxClamp});

@@ -27,6 +27,7 @@ inline ConductorBsdf make_lobe(const ConductorMaterial& material, const LobeCont
 }
 
 inline bool lobe_is_specular(const ConductorBsdf& lobe) { return lobe.facets.smooth(); }
+inline bool lobe_only_reflects(const ConductorBsdf&) { return true; }
 inline bool lobe_has_direction(const ConductorBsdf& lobe) { return lobe.facets.alpha_x != lobe.facets.alpha_y; }
 
 inline Rgb fresnel(const ConductorBsdf& lobe, double cosine) {

@@ -15,6 +15,7 @@ inline DiffuseBsdf make_lobe(const DiffuseMaterial& material, const LobeContext&
 }
 
 inline bool lobe_is_specular(const DiffuseBsdf&) { return false; }
+inline bool lobe_only_reflects(const DiffuseBsdf&) { return true; }
 
 /// 1: w is on the front by both normals, -1: on the back by both, 0: they disagree. A direction on which they disagree
 /// neither gives nor gets light, so that nothing leaks through a surface whose shading normals are bent.

@@ -26,6 +26,12 @@ bool lobe_has_direction(const Lobe&) {
     return false;
 }
 
+/// Whether all light that leaves towards wo has come from the side of the shading normal on which wo is.
+template <class Lobe>
+bool lobe_only_reflects(const Lobe&) {
+    return false;
+}
+
 struct LobeGeometry {
     Vec3 ng;
     const Frame& frame;  ///< z is the shading normal, on the side of ng

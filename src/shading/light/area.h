@@ -20,7 +20,7 @@ inline double emitter_pdf(const std::monostate&, const EmitterContext&, Vec3d, V
 inline std::optional<LightSample> sample_kind(const AreaLight& light, const LightContext& context,
                                               const SurfacePoint& from, uint32_t choice, Vec2 u) {
     if (is_black(light.radiance)) return std::nullopt;
-    const EmitterContext emitter_context{context.scene, context.light, light.two_sided};
+    const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided};
     const std::optional<EmitterSample> at =
         std::visit([&](const auto& emitter) { return sample_emitter(emitter, emitter_context, from.p, choice, u); },
                    context.data().emitter);
@@ -37,7 +37,7 @@ inline double pdf_kind(const AreaLight& light, const LightContext& context, cons
                        const SurfacePoint* hit) {
     if (!hit || hit->instance != index(light.instance) || is_black(light.radiance)) return 0;
     if (!(dot(hit->ng, wi) < 0) && !light.two_sided) return 0;
-    const EmitterContext emitter_context{context.scene, context.light, light.two_sided};
+    const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided, hit->prim};
     return std::visit(
         [&](const auto& emitter) { return emitter_pdf(emitter, emitter_context, from.p, hit->p, hit->ng); },
         context.data().emitter);

@@ -11,17 +11,18 @@
 #include <vector>
 
 #include "math/vector.h"
+#include "shading/light_tree.h"
 #include "steradian/scene.h"
 
 namespace steradian {
 
 struct ShadingScene;
 
-/// Chooses a triangle by its area, then a point on it uniformly.
+/// Chooses a triangle by what it may contribute, then a point on it uniformly.
 struct MeshEmitter {
     InstanceId instance{};
     MeshId mesh{};
-    std::vector<double> cumulative_area;  ///< of the triangles in world space, ascending by index
+    LightTree triangles;  ///< in world space
 };
 
 /// A sphere that is one in world space as well: sampled uniformly over the cone it fills, from inside over all
@@ -72,8 +73,9 @@ struct EmitterSample {
 /// What a kind may need besides its own values.
 struct EmitterContext {
     const ShadingScene& scene;
-    uint32_t light = 0;
+    LightReceiver receiver;
     bool two_sided = false;
+    uint32_t prim = 0;  ///< for densities: the primitive that is seen
 };
 
 /// Per solid angle at a distance, from per area; 0 where the surface is seen edge-on.

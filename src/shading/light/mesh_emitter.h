@@ -1,10 +1,11 @@
 #pragma once
 
-#include <algorithm>
+#include <numbers>
 #include <optional>
 
 #include "math/transform.h"
 #include "math/warp.h"
+#include "shading/light/emitter.h"
 #include "shading/shading_scene.h"
 #include "shading/surface_error.h"
 
@@ -27,11 +28,34 @@ inline EmitterTriangle world_triangle(const Affine& world_from_object, const Emi
             transform_vector(world_from_object, t.e2)};
 }
 
-/// The first triangle whose cumulative area exceeds a uniform share of the total: one without area is never chosen.
-inline uint32_t choose_triangle(const std::vector<double>& cumulative, uint32_t choice) {
-    const double x = (choice + 0.5) * 0x1p-32 * cumulative.back();
-    const auto at = std::upper_bound(cumulative.begin(), cumulative.end(), x);
-    return static_cast<uint32_t>(min_of(at - cumulative.begin(), static_cast<std::ptrdiff_t>(cumulative.size()) - 1));
+/// Of one triangle per radiance; no strength where it has no area.
+inline LightBounds triangle_bounds(const EmitterTriangle& t, bool flips, bool two_sided) {
+    const Vec3d p1 = t.p0 + t.e1, p2 = t.p0 + t.e2, n = t.scaled_normal();
+    const double l = length(n);
+    if (!(l > 0) || !std::isfinite(l)) return {};
+    const auto least = [](double a, double b, double c) { return min_of(a, min_of(b, c)); };
+    const auto most = [](double a, double b, double c) { return max_of(a, max_of(b, c)); };
+    return {{least(t.p0.x, p1.x, p2.x), least(t.p0.y, p1.y, p2.y), least(t.p0.z, p1.z, p2.z)},
+            {most(t.p0.x, p1.x, p2.x), most(t.p0.y, p1.y, p2.y), most(t.p0.z, p1.z, p2.z)},
+            {n * ((flips ? -1.0 : 1.0) / l), 0, std::numbers::pi / 2, two_sided},
+            l / 2};
+}
+
+/// Calls each(bounds) for every triangle, in order.
+template <class Each>
+void each_triangle_bounds(const ShadingScene& scene, InstanceId instance, MeshId mesh, bool two_sided, Each each) {
+    const ShadingScene::TransformData& data = scene.transform_of(index(instance));
+    const Affine& transform = scene.scene.instances[index(instance)].world_from_object;
+    const Mesh& m = scene.scene.meshes[index(mesh)];
+    for (uint32_t i = 0; i < m.indices.size() / 3; ++i) {
+        const EmitterTriangle object = object_triangle(m, i);
+        each(triangle_bounds(data.identity ? object : world_triangle(transform, object), data.flips, two_sided));
+    }
+}
+
+/// Of a triangle that is chosen with a probability and then sampled uniformly. One without area is never chosen.
+inline double triangle_pdf(const EmitterTriangle& world, double probability, Vec3d to_surface, Vec3d n) {
+    return probability > 0 ? solid_angle_pdf(2 * probability / length(world.scaled_normal()), to_surface, n) : 0;
 }
 
 inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, const EmitterContext& context,
@@ -39,8 +63,9 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     const ShadingScene& scene = context.scene;
     const ShadingScene::TransformData& instance = scene.transform_of(index(emitter.instance));
     const Affine& transform = scene.scene.instances[index(emitter.instance)].world_from_object;
-    const uint32_t prim = choose_triangle(emitter.cumulative_area, choice);
-    const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], prim);
+    const std::optional<ChosenLight> chosen = emitter.triangles.choose(context.receiver, choice);
+    if (!chosen) return std::nullopt;
+    const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], chosen->light);
     const EmitterTriangle world = instance.identity ? object : world_triangle(transform, object);
     const warp::TrianglePoint b = warp::triangle(u);
     const Vec3d p_object = object.p0 + object.e1 * b.b1 + object.e2 * b.b2;
@@ -53,12 +78,17 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     const double reach = max_component(abs(object.p0)) + size;
     out.p_error =
         surface_error(transform, instance, p_object, out.p, flat_slack(size, reach, length(object.scaled_normal())));
-    out.pdf = solid_angle_pdf(1 / scene.lights[context.light].area, out.p - from, out.n);
+    out.pdf = triangle_pdf(world, chosen->probability, out.p - from, out.n);
     return out;
 }
 
-inline double emitter_pdf(const MeshEmitter&, const EmitterContext& context, Vec3d from, Vec3d p, Vec3d n) {
-    return solid_angle_pdf(1 / context.scene.lights[context.light].area, p - from, n);
+inline double emitter_pdf(const MeshEmitter& emitter, const EmitterContext& context, Vec3d from, Vec3d p, Vec3d n) {
+    const ShadingScene& scene = context.scene;
+    const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], context.prim);
+    const Instance& instance = scene.scene.instances[index(emitter.instance)];
+    const bool identity = scene.transform_of(index(emitter.instance)).identity;
+    const EmitterTriangle world = identity ? object : world_triangle(instance.world_from_object, object);
+    return triangle_pdf(world, emitter.triangles.probability(context.receiver, context.prim), p - from, n);
 }
 
 }  // namespace steradian

@@ -1,0 +1,311 @@
+// Choosing among lights: probabilities are those of the choices, to the last of the 2^32 values; nothing that
+// contributes is left out; and a hierarchy chooses better than chance.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "shading/area_lights.h"
+#include "shading/light_selection.h"
+#include "support/chi_square.h"
+#include "support/support.h"
+
+namespace steradian {
+namespace {
+
+using test::World;
+
+Vec3 point_in(test::Random& random, double half) {
+    const double x = random.between(-half, half), y = random.between(-half, half), z = random.between(-half, half);
+    return static_cast<Vec3>(Vec3d{x, y, z});
+}
+
+Vec3 direction(test::Random& random) { return static_cast<Vec3>(random.direction()); }
+
+LightBounds random_light(test::Random& random) {
+    const Vec3d p = point_in(random, 3);
+    // From points to what is as large as the scene; some lie on top of each other.
+    const double size = random.between(0, 1) < 0.3 ? 0 : std::exp(random.between(-8, 1));
+    const Vec3d reach = Vec3d(abs(direction(random))) * size;
+    LightBounds out{p - reach, p + reach, {}, std::exp(random.between(-12, 8))};
+    out.cone.axis = random.direction();
+    out.cone.theta_o = random.between(0, 1) < 0.5 ? 0 : random.between(0, std::numbers::pi);
+    out.cone.theta_e = random.between(0, 1) < 0.7 ? std::numbers::pi / 2 : random.between(0, std::numbers::pi);
+    out.cone.two_sided = random.between(0, 1) < 0.3;
+    return out;
+}
+
+std::vector<LightBounds> random_lights(test::Random& random, size_t n) {
+    std::vector<LightBounds> out;
+    for (size_t i = 0; i < n; ++i) out.push_back(random.between(0, 1) < 0.1 && i > 0 ? out.back() : random_light(random));
+    return out;
+}
+
+LightReceiver random_receiver(test::Random& random) {
+    LightReceiver out{point_in(random, 4), direction(random), random.between(0, 1) < 0.3};
+    if (random.between(0, 1) < 0.1) out.n = {};
+    return out;
+}
+
+/// How many nodes that count promise what neither of their children keeps.
+int promises_broken(const LightTree& tree, const LightReceiver& at, const LightNode& node) {
+    if (node.lights == 1) return 0;
+    const LightNode* children = tree.nodes().data() + node.child;
+    int broken = 0, counting = 0;
+    for (int k = 0; k < 2; ++k) {
+        if (light_importance(children[k], at).numerator == 0) continue;
+        ++counting;
+        broken += promises_broken(tree, at, children[k]);
+    }
+    return counting == 0 ? 1 : broken;
+}
+
+TEST(LightTree, ProbabilitiesSumToOneExactlyWhereNothingIsLost) {
+    test::Random random(1);
+    int exact = 0;
+    for (int round = 0; round < 300; ++round) {
+        const size_t n = 1 + static_cast<size_t>(random.between(0, round < 290 ? 60 : 3000));
+        const LightTree tree(random_lights(random, n));
+        const LightReceiver at = random_receiver(random);
+        double sum = 0;  // exact: multiples of 2^-32
+        for (uint32_t i = 0; i < n; ++i) sum += tree.probability(at, i);
+        if (tree.reaches(at) && promises_broken(tree, at, tree.nodes()[0]) == 0) {
+            EXPECT_EQ(sum, 1) << round;
+            ++exact;
+        } else {
+            EXPECT_LT(sum, 1) << round;
+        }
+    }
+    EXPECT_GT(exact, 50);
+}
+
+/// A run of values is what it takes to know every choice: its first and its last value choose the light, the ones
+/// beyond another.
+TEST(LightTree, TheProbabilityOfALightIsTheLengthOfItsRun) {
+    test::Random random(2);
+    for (int round = 0; round < 200; ++round) {
+        const auto n = static_cast<uint32_t>(1 + random.between(0, 40));
+        const LightTree tree(random_lights(random, n));
+        const LightReceiver at = random_receiver(random);
+        const uint64_t values = round % 2 ? kLightValues : kLightValues / 2 + 7;
+        std::map<uint32_t, uint64_t> counted;
+        for (uint64_t x = 0; x < values;) {
+            const auto chosen = tree.choose(at, static_cast<uint32_t>(x), values);
+            if (!chosen) break;  // what follows is lost, or not: the test above counts
+            const double p = tree.probability(at, chosen->light, values);
+            ASSERT_EQ(p, chosen->probability);
+            const auto run = static_cast<uint64_t>(p * 0x1p32);
+            ASSERT_GT(run, 0u);
+            counted[chosen->light] += run;
+            const auto last = tree.choose(at, static_cast<uint32_t>(x + run - 1), values);
+            ASSERT_TRUE(last && last->light == chosen->light) << round;
+            if (x + run < values) {
+                const auto next = tree.choose(at, static_cast<uint32_t>(x + run), values);
+                ASSERT_TRUE(!next || next->light != chosen->light) << round;
+            }
+            x += run;
+        }
+        for (const auto& [light, run] : counted)
+            EXPECT_EQ(static_cast<double>(run) * 0x1p-32, tree.probability(at, light, values));
+    }
+}
+
+TEST(LightTree, FrequenciesFollowProbabilities) {
+    test::Random random(3);
+    for (int round = 0; round < 20; ++round) {
+        const uint32_t n = 100;
+        const LightTree tree(random_lights(random, n));
+        const LightReceiver at = random_receiver(random);
+        const int count = test::by_tier(100000, 2000000);
+        std::vector<double> observed(n + 1), expected(n + 1);
+        for (int i = 0; i < count; ++i) {
+            const auto chosen = tree.choose(at, random.bits32());
+            ++observed[chosen ? chosen->light : n];
+        }
+        double rest = 1;
+        for (uint32_t i = 0; i < n; ++i) {
+            const double p = tree.probability(at, i);
+            expected[i] = p * count;
+            rest -= p;
+        }
+        expected[n] = rest * count;
+        const test::ChiSquare result = test::chi_square(observed, expected);
+        EXPECT_TRUE(result.passes()) << result;
+    }
+}
+
+/// A point of each light and a normal within its cone: where its light arrives, the probability is not 0.
+TEST(LightTree, NothingThatContributesIsLeftOut) {
+    test::Random random(4);
+    int contributing = 0;
+    for (int round = 0; round < test::by_tier(1500, 20000); ++round) {
+        const auto n = static_cast<uint32_t>(1 + random.between(0, 30));
+        const std::vector<LightBounds> lights = random_lights(random, n);
+        const LightTree tree(lights);
+        for (int k = 0; k < 10; ++k) {
+            const auto i = static_cast<uint32_t>(random.between(0, n));
+            const LightBounds& b = lights[i];
+            const auto within = [&](double lo, double hi) { return lo + (hi - lo) * random.between(0, 1); };
+            const Vec3d q{within(b.lo.x, b.hi.x), within(b.lo.y, b.hi.y), within(b.lo.z, b.hi.z)};
+            LightReceiver at = random_receiver(random);
+            // Also from inside the box, from its corners, and from the plane of the light.
+            if (k == 1) at.p = static_cast<Vec3>(q);
+            if (k == 2) at.p = static_cast<Vec3>(b.hi);
+            if (k == 3) {
+                const Vec3d aside = normalize(cross(b.cone.axis, Vec3d{0.3, 0.5, 0.7}));
+                at.p = static_cast<Vec3>(q + aside * 2 + b.cone.axis * 1e-6);
+            }
+            if (k == 4) at.n = static_cast<Vec3>(normalize(cross(q - Vec3d(at.p), Vec3d{0.1, 0.2, 0.3})));
+            const Vec3d way = q - Vec3d(at.p);
+            const double distance = length(way);
+            if (!(distance > 0)) continue;
+            const double received = dot(way, Vec3d(at.n)) / distance;
+            double from_axis = -dot(way, b.cone.axis) / distance;
+            if (b.cone.two_sided) from_axis = std::fabs(from_axis);
+            const double angle = std::acos(clamp_to(from_axis, -1.0, 1.0));
+            const bool emitted = angle < b.cone.theta_o + b.cone.theta_e;
+            const bool arrives = at.n == Vec3{} || (at.both_sides ? received != 0 : received > 0);
+            if (!emitted || !arrives) continue;
+            ++contributing;
+            EXPECT_GT(tree.probability(at, i), 0) << round << " " << k << " " << angle << " " << received;
+        }
+    }
+    EXPECT_GT(contributing, 5000);
+}
+
+/// Whatever sample_light finds for a triangle: its probability was not 0, and the density agrees.
+TEST(LightTree, OfAMeshWithDegenerateTriangles) {
+    test::Random random(5);
+    Scene scene;
+    Mesh mesh;
+    for (int i = 0; i < 300; ++i) mesh.positions.push_back(point_in(random, 1));
+    for (uint32_t i = 0; i < 300; ++i) {
+        mesh.indices.insert(mesh.indices.end(), {i, (i * 7 + 1) % 300, (i * 13 + 5) % 300});
+        mesh.indices.insert(mesh.indices.end(), {i, i, (i + 1) % 300});
+    }
+    const MeshId id = add<MeshId>(scene.meshes, std::move(mesh));
+    const test::AreaLightCase light = [&] {
+        test::AreaLightCase out{"", std::move(scene), true};
+        const InstanceId instance = test::add_shape(out.scene, id, {});
+        add<InstanceId>(out.scene.lights, Light{AreaLight{instance, {1, 1, 1}, true, 1}});
+        return out;
+    }();
+    const World world(light.scene);
+    int seen = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const SurfacePoint from = test::receiver(point_in(random, 2), direction(random));
+        const Vec3 wi = direction(random);
+        if (dot(wi, from.ns) <= 0) continue;
+        const Ray ray = spawn_ray(from, wi);
+        const Hit hit = world.accel.intersect(ray);
+        if (!hit.found()) continue;
+        const SurfacePoint point = surface_at(world.shading, ray, hit);
+        ++seen;
+        EXPECT_GT(pdf_light(world.shading, 0, from, wi, &point), 0) << i;
+    }
+    EXPECT_GT(seen, 1000);
+}
+
+TEST(LightTree, IsTheSameTreeForTheSameLightsAndLeavesOutTheDark) {
+    test::Random random(6);
+    std::vector<LightBounds> lights = random_lights(random, 500);
+    for (LightBounds& light : lights) light.cone.theta_o = std::numbers::pi;
+    for (size_t i = 0; i < lights.size(); i += 3) lights[i].strength = 0;
+    const LightTree a(lights), b(lights);
+    ASSERT_EQ(a.nodes().size(), b.nodes().size());
+    EXPECT_EQ(a.nodes()[0].lights, 333u);
+    EXPECT_EQ(a.nodes().size(), 2u * 333 - 1);
+    const LightReceiver at{{0, 0, 0}, {}, false};
+    for (uint32_t i = 0; i < 500; ++i) EXPECT_EQ(a.probability(at, i) > 0, i % 3 != 0) << i;
+    // All in one place: halved by count.
+    const LightTree heap(std::vector<LightBounds>(1000, lights[1]));
+    for (uint32_t i = 0; i < 1000; ++i) EXPECT_NEAR(heap.probability(at, i), 1e-3, 0.3e-3);
+}
+
+TEST(LightTree, PrefersWhatIsNearAndFacesThePoint) {
+    const auto square = [](Vec3d p, Vec3d normal) {
+        return LightBounds{p - Vec3d{0.1, 0, 0.1}, p + Vec3d{0.1, 0, 0.1}, {normal, 0, std::numbers::pi / 2}, 1};
+    };
+    const LightReceiver at{{0, 0, 0}, {0, 1, 0}, false};
+    const LightTree tree(std::vector<LightBounds>{square({0, 1, 0}, {0, -1, 0}), square({0, 3, 0}, {0, -1, 0}),
+                                                  square({1, 1, 0}, {0, 1, 0}), square({0, -1, 0}, {0, 1, 0})});
+    EXPECT_GT(tree.probability(at, 0), 0.85);
+    EXPECT_GT(tree.probability(at, 1), 0.05);
+    EXPECT_EQ(tree.probability(at, 2), 0);  // shines away
+    EXPECT_EQ(tree.probability(at, 3), 0);  // is below
+    EXPECT_GT(tree.probability({{0, 0, 0}, {0, 1, 0}, true}, 3), 0.3);
+}
+
+Scene mixed_lights(test::Random& random, bool distant) {
+    Scene scene;
+    for (int i = 0; i < 5; ++i) {
+        scene.lights.push_back(PointLight{point_in(random, 3), {1, 2, 3}});
+        scene.lights.push_back(SpotLight{point_in(random, 3), direction(random), {3, 2, 3}, 20, 50});
+        const Sphere sphere{point_in(random, 3), 0.2f};
+        const InstanceId id = test::add_shape(scene, sphere, {});
+        scene.lights.push_back(AreaLight{id, {2, 2, 2}, false, 1});
+        if (distant) scene.lights.push_back(DirectionalLight{direction(random), {1, 1, 1}});
+    }
+    if (distant) scene.lights.push_back(EnvironmentLight{{1, 1, 1}});
+    return scene;
+}
+
+TEST(LightSelection, FrequenciesFollowProbabilities) {
+    test::Random random(7);
+    for (const bool distant : {false, true})
+        for (const LightChoice by : {LightChoice::bvh, LightChoice::power, LightChoice::uniform}) {
+            const World world(mixed_lights(random, distant));
+            const LightSelection& lights = world.shading.light_selection;
+            const LightReceiver at = random_receiver(random);
+            const int count = 200000;
+            std::vector<double> observed(lights.lights() + 1), expected(lights.lights() + 1);
+            for (int i = 0; i < count; ++i) {
+                const auto chosen = lights.choose(by, at, random.bits32());
+                if (chosen) {
+                    ASSERT_EQ(chosen->probability, lights.probability(by, at, chosen->light));
+                }
+                ++observed[chosen ? chosen->light : lights.lights()];
+            }
+            double rest = 1, far = 0;
+            for (uint32_t i = 0; i < lights.lights(); ++i) {
+                const double p = lights.probability(by, at, i);
+                expected[i] = p * count, rest -= p;
+                const Light& light = world.shading.scene.lights[i];
+                if (std::holds_alternative<DirectionalLight>(light) || std::holds_alternative<EnvironmentLight>(light))
+                    far += p;
+            }
+            expected[lights.lights()] = rest * count;
+            EXPECT_TRUE(test::chi_square(observed, expected).passes()) << test::chi_square(observed, expected);
+            if (by != LightChoice::bvh) {
+                EXPECT_EQ(rest, 0);
+            }
+            if (by != LightChoice::uniform) {
+                EXPECT_NEAR(far, distant ? 0.5 : 0, 1e-8);  // and one value each by power
+            }
+        }
+}
+
+TEST(LightSelection, ByPowerIsByFlux) {
+    Scene scene;
+    scene.lights = {PointLight{{0, 0, 0}, {1, 1, 1}}, PointLight{{0, 0, 0}, {3, 3, 3}}, PointLight{{0, 0, 0}, {0, 0, 0}},
+                    SpotLight{{0, 0, 0}, {0, 1, 0}, {2, 2, 2}, 90, 90}};
+    const InstanceId id = test::add_shape(scene, Rectangle{}, {});
+    scene.lights.push_back(AreaLight{id, {1, 1, 1}, true, 1});
+    const World world(std::move(scene));
+    const LightSelection& lights = world.shading.light_selection;
+    const double pi = std::numbers::pi, flux[] = {4 * pi, 12 * pi, 0, 4 * pi, 8 * pi};
+    for (uint32_t i = 0; i < 5; ++i)
+        EXPECT_NEAR(lights.probability(LightChoice::power, {}, i), flux[i] / (28 * pi), 1e-8) << i;
+}
+
+TEST(LightSelection, WhereNothingNearReachesAPointDistantLightHasItAll) {
+    Scene scene;
+    scene.lights = {SpotLight{{0, 1, 0}, {0, 1, 0}, {1, 1, 1}, 10, 20}, DirectionalLight{{0, -1, 0}, {1, 1, 1}}};
+    const World world(std::move(scene));
+    const LightReceiver at{{0, 0, 0}, {0, 1, 0}, false};
+    EXPECT_EQ(world.shading.light_selection.probability(LightChoice::bvh, at, 1), 1);
+    EXPECT_EQ(world.shading.light_selection.probability(LightChoice::bvh, at, 0), 0);
+    EXPECT_FALSE(World(Scene{}).shading.light_selection.choose(LightChoice::bvh, at, 5));
+}
+
+}  // namespace
+}  // namespace steradian
