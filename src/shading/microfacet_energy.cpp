@@ -50,18 +50,19 @@ struct Cubic {
     }
 };
 
-/// Entries are dense at both ends, where the loss is like c log c and like the sine. c is the cosine in the space in
-/// which the roughness is 1 (ggx.h): there the loss changes at the same place whatever the roughness.
+/// Entries are dense at both ends, where the loss is like c log c and like the sine. The same map serves for the
+/// squared sine of the azimuth: a strong grain is seen from a narrow range of directions at either end.
 double polar_from_cosine(double c) {
     const double a = std::sqrt(max_of(c, 0.0)), b = std::sqrt(max_of(1 - c, 0.0));
     return a / (a + b);
 }
 double cosine_from_polar(double t) { return t * t / (t * t + (1 - t) * (1 - t)); }
 
-/// The direction with the cosine c and the squared sine q of the azimuth in the space in which the roughness is 1.
-Vec3d unstretched(const Ggx& ggx, double c, double q) {
+/// The direction with the cosine c and the squared sine q of the azimuth in the space that is scaled by `stretch` along
+/// x and y.
+Vec3d unstretched(Vec2 stretch, double c, double q) {
     const double s = std::sqrt((1 - c) * (1 + c));
-    return normalize(Vec3d{s * std::sqrt(1 - q) / ggx.ax, s * std::sqrt(q) / ggx.ay, c});
+    return normalize(Vec3d{s * std::sqrt(1 - q) / stretch.x, s * std::sqrt(q) / stretch.y, c});
 }
 
 /// ∫ G2 (o · h) D / o.z over microfacet normals h, times the part `bounce(h, o · h)` that leaves. With slopes m (αx cos
@@ -155,6 +156,10 @@ Microfacets MicrofacetEnergy::at_level(const Roughness& roughness, int level) co
     return clamped(alphas(roughness, roughness.squared ? scale : scale * scale), t);
 }
 
+Vec2 MicrofacetEnergy::stretch(const Microfacets& m, Side side) const {
+    return side == dense_side_ ? Vec2{1, 1} : Vec2{m.alpha_x, m.alpha_y};
+}
+
 template <class Albedo>
 void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo& albedo) {
     loss_.reserve(size_t(sides_) * size_t(levels_) * size_t(azimuths_) * kPolar);
@@ -163,8 +168,10 @@ void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo&
         for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
             for (int polar = 0; polar < kPolar; ++polar) {
                 const double c = cosine_from_polar(static_cast<double>(polar) / (kPolar - 1));
-                const double q = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
-                const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), unstretched(m.ggx(), max_of(c, 1e-6), q));
+                const double a = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
+                const double q = cosine_from_polar(a);
+                const Vec3d o = unstretched(stretch(m, side), max_of(c, 1e-6), q);
+                const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), o);
                 loss_.push_back(static_cast<float>(max_of(lost, 0.0)));
             }
     }
@@ -193,6 +200,7 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Rough
 
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Roughness& roughness, double eta) {
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 2));
+    out->dense_side_ = eta > 1 ? Side::inside : Side::outside;
     for (const Side side : {Side::outside, Side::inside})
         out->fill(roughness, side, [&](const Ggx& ggx, Vec3d o) {
             return transmitting_albedo(ggx, o, side == Side::outside ? eta : 1 / eta);
@@ -202,9 +210,11 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Rou
 
 double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side) const noexcept {
     if (m.smooth()) return 0;
-    const double x = m.alpha_x * w.x, y = m.alpha_y * w.y, z = w.z;
+    const Vec2 scale = stretch(m, side);
+    const double x = scale.x * w.x, y = scale.y * w.y, z = w.z;
     const double across = x * x + y * y;
-    const Cubic l(m.level, levels_), a(across > 0 ? y * y / across : 0, azimuths_),
+    const double q = across > 0 ? y * y / across : 0;
+    const Cubic l(m.level, levels_), a(polar_from_cosine(q), azimuths_),
         p(polar_from_cosine(z / std::sqrt(across + z * z)), kPolar);
     double sum = 0;
     for (int i = 0; i < l.count; ++i)

@@ -55,12 +55,14 @@ void add_glass(std::vector<MaterialCase>& out) {
         const std::string name = "glass " + number(eta) + " alpha " + number(x) + " " + number(y);
         // Refraction with an index near 1 bends little: its peak is narrower than the roughness.
         const float peak = std::min(x, y) * std::min(1.0f, std::fabs(eta - 1));
-        // Total reflection begins with an edge, which the tables smooth; most so with a grain, from inside.
-        const double error = x == y ? 4e-3 : 4e-2;
+        // Total reflection begins with an edge, which the tables smooth.
+        const double error = x == y ? 4e-3 : 1e-2;
         out.push_back({name, GlassMaterial{eta, {1, 1, 1}, {1, 1, 1}, rough(x, y)}, true, peak, eta, error});
     };
     for (const float alpha : {0.1f, 0.4f, 1.0f}) glass(1.5f, alpha, alpha);
     glass(1.5f, 0.1f, 0.4f);
+    glass(1.5f, 0.8f, 0.1f);
+    glass(0.7f, 0.1f, 0.3f);
     glass(0.7f, 0.3f, 0.3f);
     glass(2.4f, 0.5f, 0.5f);
     glass(1.1f, 0.5f, 0.5f);

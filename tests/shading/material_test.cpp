@@ -30,6 +30,12 @@ std::vector<Vec3> directions(Vec3 n, Random& random) {
     return out;
 }
 
+/// Inside over outside of a body; 1 for sheets.
+float material_index(const MaterialCase& c) {
+    const auto* glass = std::get_if<GlassMaterial>(&c.material);
+    return glass ? glass->eta : 1;
+}
+
 template <class Check>
 void for_all_cases(const Check& check) {
     for (size_t i = 0; i < material_scene().cases().size(); ++i) {
@@ -154,6 +160,25 @@ Rgb albedo(const Bsdf& bsdf, Vec3 wo, Vec3 n, const MaterialCase& material, int 
     add_side(test::mirrored(wo, n), true, 1);
     add_side(test::refracted(wo, n, material.eta), false, dot(wo, n) > 0 ? eta2 : 1 / eta2);
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+}
+
+/// What refraction adds to the radiance is not a reason to keep a path (path.cpp), so samples say how much it is.
+TEST(Materials, SamplesSayWhatRefractionAdds) {
+    Random random(36);
+    const Vec3 n{0, 0, 1};
+    for_all_cases([&](const MaterialCase& material, size_t index) {
+        const Bsdf bsdf = material_scene().bsdf(index, n, n);
+        if (std::holds_alternative<RefractionMaterial>(material.material)) return;  // passes radiance on as it is
+        const float eta2 = material_index(material) * material_index(material);
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 wo = static_cast<Vec3>(random.direction());
+            const float uc = random.uniform();
+            const auto s = sample(bsdf, wo, uc, random.uniform2());
+            if (!s) continue;
+            const float added = wo.z > 0 ? 1 / eta2 : eta2;
+            EXPECT_NEAR(s->radiance_scale, s->transmitted ? added : 1, 1e-6f * (1 + added));
+        }
+    });
 }
 
 /// In a white furnace. The tables are good to 1e-4, the rounding of directions adds as much where peaks are narrow.

@@ -11,7 +11,8 @@ namespace steradian {
 
 struct LocalEval {
     Rgb f_cos;
-    double pdf = 0;  ///< of sample_local choosing wi
+    double pdf = 0;             ///< of sample_local choosing wi
+    double radiance_scale = 1;  ///< the (η_i/η_t)² that is part of f_cos
 };
 
 /// The frame as seen from wo, and where the surface itself lies in it.
@@ -41,17 +42,17 @@ struct LocalFrame {
 };
 
 template <class Lobe>
-BsdfEval eval_in_frame(const Lobe& lobe, const LocalFrame& frame, Vec3 wo, Vec3 wi) {
+LocalEval eval_in_frame(const Lobe& lobe, const LocalFrame& frame, Vec3 wo, Vec3 wi) {
     const Vec3d o = frame.to_local(wo), i = frame.to_local(wi);
-    if (!(o.z > 0) || !frame.agree_on(wi, i)) return {};
-    const LocalEval e = eval_local(lobe, o, i, frame.outside);
-    return {e.f_cos, static_cast<float>(e.pdf)};
+    return o.z > 0 && frame.agree_on(wi, i) ? eval_local(lobe, o, i, frame.outside) : LocalEval{};
 }
 
 template <class Lobe>
 BsdfEval eval_by_frame(const Lobe& lobe, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
     const auto frame = LocalFrame::seen_from(g, wo);
-    return frame ? eval_in_frame(lobe, *frame, wo, wi) : BsdfEval{};
+    if (!frame) return {};
+    const LocalEval e = eval_in_frame(lobe, *frame, wo, wi);
+    return {e.f_cos, static_cast<float>(e.pdf)};
 }
 
 /// The direction is rounded to float first: weight and density are those of what is returned, to the bit those of eval.
@@ -65,9 +66,11 @@ std::optional<BsdfSample> sample_by_frame(const Lobe& lobe, const LobeGeometry& 
     const std::optional<Vec3d> local = sample_local(lobe, o, frame->outside, uc, u);
     if (!local) return std::nullopt;
     const Vec3 wi = static_cast<Vec3>(normalize(frame->axes.to_world(*local)));
-    const BsdfEval e = eval_in_frame(lobe, *frame, wo, wi);
-    if (!(e.pdf > 0) || !is_finite(e.pdf)) return std::nullopt;
-    return BsdfSample{wi, e.f_cos / e.pdf, e.pdf, false, dot(Vec3d(wi), frame->ng) < 0};
+    const LocalEval e = eval_in_frame(lobe, *frame, wo, wi);
+    const auto pdf = static_cast<float>(e.pdf);
+    if (!(pdf > 0) || !is_finite(pdf)) return std::nullopt;
+    const bool transmitted = dot(Vec3d(wi), frame->ng) < 0;
+    return BsdfSample{wi, e.f_cos / pdf, pdf, false, transmitted, static_cast<float>(e.radiance_scale)};
 }
 
 }  // namespace steradian

@@ -74,7 +74,7 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         f_cos += l.lost * share * from_wi * cosine / std::numbers::pi;
         pdf += l.lost * share * WideLobe(lobe.facets).pdf(cosine);
     }
-    return {tint * static_cast<float>(f_cos * radiance_scale), pdf};
+    return {tint * static_cast<float>(f_cos * radiance_scale), pdf, radiance_scale};
 }
 
 inline std::optional<Vec3d> sample_local(const RoughGlassBsdf& lobe, Vec3d wo, bool outside, float uc, Vec2 u) {
