@@ -124,8 +124,15 @@ struct ConductorMaterial {
     Rgb tint{1, 1, 1};  ///< multiplies whatever is reflected: 1 for a real metal
 };
 
+/// A thin sheet that scatters light back and through by Lambert's law, both sides alike: leaves, paper. The two
+/// together are at most 1 where no energy is added.
+struct DiffuseTransmissionMaterial {
+    TextureId reflectance{};
+    TextureId transmittance{};
+};
+
 using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,
-                              ThinGlassMaterial>;
+                              ThinGlassMaterial, DiffuseTransmissionMaterial>;
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 

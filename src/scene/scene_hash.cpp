@@ -60,6 +60,7 @@ private:
     void put(const ComplexIndex& i) { put(i.n, i.k); }
     void put(const SchlickReflectance& r) { put(r.normal, r.grazing); }
     void put(const ThinGlassMaterial& m) { put(m.eta, m.transmittance); }
+    void put(const DiffuseTransmissionMaterial& m) { put(m.reflectance, m.transmittance); }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
     void raw(const std::vector<T>& values) {

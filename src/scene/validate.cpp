@@ -115,6 +115,10 @@ private:
         refers(r.normal, s_.textures, "texture");
         color(r.grazing, "the reflectance at the edge must be finite and not negative");
     }
+    void check(const DiffuseTransmissionMaterial& m) const {
+        refers(m.reflectance, s_.textures, "texture");
+        refers(m.transmittance, s_.textures, "texture");
+    }
     void check(const ConductorMaterial& m) const {
         check(m.reflectance);
         check(m.roughness);

@@ -2,6 +2,7 @@
 
 #include "shading/bsdf/conductor.h"
 #include "shading/bsdf/diffuse.h"
+#include "shading/bsdf/diffuse_transmission.h"
 #include "shading/bsdf/glass.h"
 #include "shading/bsdf/mirror.h"
 #include "shading/bsdf/refraction.h"

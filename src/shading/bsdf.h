@@ -50,8 +50,12 @@ struct ThinGlassBsdf {
     Rgb transmittance;
 };
 
-using Lobe =
-    std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf, ThinGlassBsdf>;
+struct DiffuseTransmissionBsdf {
+    Rgb reflectance, transmittance;
+};
+
+using Lobe = std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf,
+                          ThinGlassBsdf, DiffuseTransmissionBsdf>;
 
 struct Bsdf {
     Lobe lobe;

@@ -186,6 +186,15 @@ TEST(NativeScene, Conductors) {
     EXPECT_EQ(m[3].roughness.texture, TextureId{0});
 }
 
+TEST(NativeScene, DiffuseTransmission) {
+    const LoadedScene loaded = load_good(scene_with(R"("materials": {
+        "leaf": {"type": "diffuse_transmission", "reflectance": 0.25, "transmittance": [0.5, 0.75, 0]}})"));
+    const auto& m = std::get<DiffuseTransmissionMaterial>(loaded.scene.materials[0]);
+    const auto color = [&](TextureId id) { return std::get<ConstantTexture>(loaded.scene.textures[index(id)]).value; };
+    EXPECT_EQ(color(m.reflectance), (Rgb{0.25f, 0.25f, 0.25f}));
+    EXPECT_EQ(color(m.transmittance), (Rgb{0.5f, 0.75f, 0}));
+}
+
 TEST(NativeScene, RoughAndThinGlass) {
     const LoadedScene loaded = load_good(scene_with(R"("materials": {
         "frosted": {"type": "glass", "roughness": 0.4}, "clear": {"type": "glass"},

@@ -22,6 +22,7 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(ConductorMaterial{ComplexIndex{}, {}}));
     add<MaterialId>(s.materials, Material(ConductorMaterial{SchlickReflectance{}, {}}));
     add<MaterialId>(s.materials, Material(ThinGlassMaterial{}));
+    add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{}));
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
@@ -66,6 +67,8 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).roughness.value.x = 0.5f; },
         [](Scene& s) { std::get<ThinGlassMaterial>(s.materials[6]).eta = 2; },
         [](Scene& s) { std::get<ThinGlassMaterial>(s.materials[6]).transmittance.b = 0.5f; },
+        [](Scene& s) { std::get<DiffuseTransmissionMaterial>(s.materials[7]).reflectance = TextureId{1}; },
+        [](Scene& s) { std::get<DiffuseTransmissionMaterial>(s.materials[7]).transmittance = TextureId{1}; },
         [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },

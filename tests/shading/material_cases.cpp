@@ -79,11 +79,16 @@ MaterialScene::MaterialScene() {
     Scene scene;
     const auto texture = [&](Rgb value) { return add<TextureId>(scene.textures, Texture{ConstantTexture{value}}); };
     const TextureId white = texture({1, 1, 1}), orange = texture({0.8f, 0.5f, 0.2f}), level = texture({0.7f, 0, 0});
+    const TextureId black = texture({0, 0, 0}), level_all = texture({0.7f, 0.2f, 0.5f}),
+                    level_rest = texture({0.3f, 0.8f, 0.5f});
     cases_.push_back({"diffuse", DiffuseMaterial{orange, false}});
     cases_.push_back({"diffuse two-sided white", DiffuseMaterial{white, true}, true});
     for (const float roughness : {1e-3f, 0.5f, 1.0f})
         cases_.push_back({"diffuse rough white " + number(roughness), DiffuseMaterial{white, true, roughness}, true});
     cases_.push_back({"diffuse rough", DiffuseMaterial{orange, false, 0.7f}});
+    cases_.push_back({"leaf", DiffuseTransmissionMaterial{orange, level}});
+    cases_.push_back({"diffuse transmission lossless", DiffuseTransmissionMaterial{level_rest, level_all}, true});
+    cases_.push_back({"diffuse transmission only", DiffuseTransmissionMaterial{black, white}, true});
     cases_.push_back({"refraction 1.5", RefractionMaterial{1.5f}});
     cases_.push_back({"refraction 0.6", RefractionMaterial{0.6f}});
     cases_.push_back({"glass 1.5", GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}}, true});

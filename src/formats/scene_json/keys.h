@@ -35,6 +35,7 @@ inline constexpr Key kRefraction[] = {"type", "eta"};
 inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance", "roughness", "alpha"};
 inline constexpr Key kMirror[] = {"type", "reflectance"};
 inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance"};
+inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance"};
 inline constexpr Key kConductor[] = {"type",      "metal", "n",   "k", "reflectance", "edge_reflectance",
                                      "roughness", "alpha", "tint"};
 
@@ -78,10 +79,13 @@ inline constexpr ObjectSpec kCameraSpecs[] = {{"perspective_camera", keys::kPers
 inline constexpr ObjectSpec kTextureSpecs[] = {{"constant_texture", keys::kConstantTexture},
                                                {"image_texture", keys::kImageTexture},
                                                {"checkerboard_texture", keys::kCheckerboardTexture}};
-inline constexpr ObjectSpec kMaterialSpecs[] = {
-    {"diffuse_material", keys::kDiffuse},     {"refraction_material", keys::kRefraction},
-    {"glass_material", keys::kGlass},         {"mirror_material", keys::kMirror},
-    {"conductor_material", keys::kConductor}, {"thin_glass_material", keys::kThinGlass}};
+inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiffuse},
+                                                {"refraction_material", keys::kRefraction},
+                                                {"glass_material", keys::kGlass},
+                                                {"mirror_material", keys::kMirror},
+                                                {"conductor_material", keys::kConductor},
+                                                {"thin_glass_material", keys::kThinGlass},
+                                                {"diffuse_transmission_material", keys::kDiffuseTransmission}};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
                                              {"sphere_shape", keys::kSphereShape},
                                              {"rectangle_shape", keys::kRectangleShape},
@@ -103,8 +107,8 @@ inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
 
 // The values of "type", in the order of the specifications above and of the enumerations that the readers use.
 inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard"};
-inline constexpr std::string_view kMaterialTypes[] = {"diffuse", "refraction", "glass",
-                                                      "mirror",  "conductor",  "thin_glass"};
+inline constexpr std::string_view kMaterialTypes[] = {
+    "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission"};
 inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};

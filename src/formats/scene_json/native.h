@@ -30,10 +30,11 @@ private:
     /// The name of a texture, or a texture; nothing for other values.
     std::optional<TextureId> find_texture(Value value);
     /// A colour, the name of a texture, or a texture.
-    TextureId read_reflectance(ObjectReader& material);
+    TextureId read_reflectance(ObjectReader& material, std::string_view key = "reflectance");
     /// "roughness" or "alpha": a number, two, or a texture.
     Roughness read_roughness(ObjectReader& material);
     ConductorMaterial read_conductor(ObjectReader& material);
+    DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
     void read_materials(Value value);
     MaterialId read_material(Value value, const std::string& name);
     /// A name or a material.

@@ -89,13 +89,13 @@ std::optional<TextureId> NativeLoader::find_texture(Value value) {
     return std::nullopt;
 }
 
-TextureId NativeLoader::read_reflectance(ObjectReader& material) {
-    const Value value = material.require("reflectance");
+TextureId NativeLoader::read_reflectance(ObjectReader& material, std::string_view key) {
+    const Value value = material.require(key);
     if (const auto texture = find_texture(value)) return *texture;
     if (!value.is(Kind::number) && !value.is(Kind::array))
-        source_.fail(value.offset(), "'reflectance' must be a colour, the name of a texture or a texture, got " +
+        source_.fail(value.offset(), quoted(key) + " must be a colour, the name of a texture or a texture, got " +
                                          json::describe(value));
-    const Rgb color = json::read_color(source_, value, "'reflectance'", json::kReflectance);
+    const Rgb color = json::read_color(source_, value, quoted(key), json::kReflectance);
     context_.warn_about_reflectance(color, value.offset());
     return assets_.add_texture(ConstantTexture{color}, "");
 }
@@ -134,6 +134,18 @@ ConductorMaterial NativeLoader::read_conductor(ObjectReader& material) {
     out.roughness = read_roughness(material);
     out.tint = material.color_or("tint", out.tint, json::kReflectance);
     context_.warn_about_reflectance(out.tint, material.offset());
+    return out;
+}
+
+DiffuseTransmissionMaterial NativeLoader::read_diffuse_transmission(ObjectReader& material) {
+    DiffuseTransmissionMaterial out;
+    out.reflectance = read_reflectance(material);
+    out.transmittance = read_reflectance(material, "transmittance");
+    const auto* r = std::get_if<ConstantTexture>(&scene().textures[index(out.reflectance)]);
+    const auto* t = std::get_if<ConstantTexture>(&scene().textures[index(out.transmittance)]);
+    // Each by itself has been looked at.
+    if (r && t && max_component(r->value) <= 1 && max_component(t->value) <= 1)
+        context_.warn_about_reflectance(r->value + t->value, material.offset());
     return out;
 }
 
@@ -181,13 +193,16 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
         case 4:
             material = read_conductor(reader);
             break;
-        default: {
+        case 5: {
             ThinGlassMaterial sheet;
             sheet.eta = reader.number_or("eta", sheet.eta, kEta);
             sheet.transmittance = reader.color_or("transmittance", sheet.transmittance, kUnit);
             material = sheet;
             break;
         }
+        default:
+            material = read_diffuse_transmission(reader);
+            break;
     }
     reader.finish();
     return assets_.add_material(material, name);
