@@ -11,14 +11,14 @@ namespace steradian {
 
 /// Directions within θ_o of the axis are where normals point; light leaves up to θ_e away from a normal.
 struct DirectionCone {
-    Vec3d axis{0, 0, 1};        ///< unit
-    double theta_o = 0;         ///< radians, [0, π]
-    double theta_e = 0;         ///< radians, [0, π]
-    bool two_sided = false;     ///< the same about -axis
+    Vec3d axis{0, 0, 1};     ///< unit
+    double theta_o = 0;      ///< radians, [0, π]
+    double theta_e = 0;      ///< radians, [0, π]
+    bool two_sided = false;  ///< the same about -axis
 };
 
 struct LightBounds {
-    Vec3d lo, hi;         ///< the box, world space; finite
+    Vec3d lo, hi;  ///< the box, world space; finite
     DirectionCone cone;
     double strength = 0;  ///< the most radiant intensity there is in any direction, about; W/sr, mean of the channels
 };
@@ -40,7 +40,7 @@ struct LightNode {
     float cos_o = -1, sin_o = 0, cos_e = 0;
     float strength = 0;   ///< as a fraction of the whole tree's, > 0
     uint32_t lights = 1;  ///< below it; 1 for leaves
-    uint32_t child = 0;   ///< of the leaf: the light's index; else of the node: its first child, the other is next to it
+    uint32_t child = 0;  ///< of the leaf: the light's index; else of the node: its first child, the other is next to it
     bool two_sided = false;
 
     static LightNode from(const LightBounds& bounds, double total_strength);

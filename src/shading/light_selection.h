@@ -34,9 +34,9 @@ private:
     uint64_t distant_values(LightChoice by, const LightReceiver& at) const noexcept;
 
     uint32_t lights_ = 0;
-    LightTree tree_;                   ///< over the lights that are somewhere
-    std::vector<uint32_t> distant_;    ///< the others, ascending
-    std::vector<double> cumulative_;   ///< flux of the lights that are somewhere, ascending by index
+    LightTree tree_;                  ///< over the lights that are somewhere
+    std::vector<uint32_t> distant_;   ///< the others, ascending
+    std::vector<double> cumulative_;  ///< flux of the lights that are somewhere, ascending by index
 };
 
 }  // namespace steradian

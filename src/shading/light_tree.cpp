@@ -226,8 +226,7 @@ std::optional<uint64_t> share_of_first(const LightNode* children, const LightRec
 
 }  // namespace
 
-std::optional<ChosenLight> LightTree::choose(const LightReceiver& at, uint32_t choice,
-                                             uint64_t values) const noexcept {
+std::optional<ChosenLight> LightTree::choose(const LightReceiver& at, uint32_t choice, uint64_t values) const noexcept {
     if (!reaches(at)) return std::nullopt;
     const LightNode* node = nodes_.data();
     uint64_t x = choice;

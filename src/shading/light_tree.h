@@ -26,8 +26,8 @@ struct ChosenLight {
 class LightTree {
 public:
     LightTree() = default;
-    /// Over the elements of `lights` that have a strength; a light is called by its index. At most 2^31 of them. The same
-    /// tree on every machine. May throw std::bad_alloc.
+    /// Over the elements of `lights` that have a strength; a light is called by its index. At most 2^31 of them. The
+    /// same tree on every machine. May throw std::bad_alloc.
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const noexcept { return nodes_.empty(); }

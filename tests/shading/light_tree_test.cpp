@@ -36,7 +36,8 @@ LightBounds random_light(test::Random& random) {
 
 std::vector<LightBounds> random_lights(test::Random& random, size_t n) {
     std::vector<LightBounds> out;
-    for (size_t i = 0; i < n; ++i) out.push_back(random.between(0, 1) < 0.1 && i > 0 ? out.back() : random_light(random));
+    for (size_t i = 0; i < n; ++i)
+        out.push_back(random.between(0, 1) < 0.1 && i > 0 ? out.back() : random_light(random));
     return out;
 }
 
@@ -286,8 +287,8 @@ TEST(LightSelection, FrequenciesFollowProbabilities) {
 
 TEST(LightSelection, ByPowerIsByFlux) {
     Scene scene;
-    scene.lights = {PointLight{{0, 0, 0}, {1, 1, 1}}, PointLight{{0, 0, 0}, {3, 3, 3}}, PointLight{{0, 0, 0}, {0, 0, 0}},
-                    SpotLight{{0, 0, 0}, {0, 1, 0}, {2, 2, 2}, 90, 90}};
+    scene.lights = {PointLight{{0, 0, 0}, {1, 1, 1}}, PointLight{{0, 0, 0}, {3, 3, 3}},
+                    PointLight{{0, 0, 0}, {0, 0, 0}}, SpotLight{{0, 0, 0}, {0, 1, 0}, {2, 2, 2}, 90, 90}};
     const InstanceId id = test::add_shape(scene, Rectangle{}, {});
     scene.lights.push_back(AreaLight{id, {1, 1, 1}, true, 1});
     const World world(std::move(scene));

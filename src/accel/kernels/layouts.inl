@@ -31,7 +31,7 @@ namespace {
 namespace {
 constexpr Kernels kFullKernels = {full::intersect,          full::occluded,          full::next_hit,
                                   full::intersect_coherent, full::occluded_coherent, full::occluded_or_cut_out};
-constexpr Kernels kCompactKernels = {
-    compact::intersect,          compact::occluded,          compact::next_hit,
-    compact::intersect_coherent, compact::occluded_coherent, compact::occluded_or_cut_out};
+constexpr Kernels kCompactKernels = {compact::intersect,         compact::occluded,
+                                     compact::next_hit,          compact::intersect_coherent,
+                                     compact::occluded_coherent, compact::occluded_or_cut_out};
 }  // namespace
