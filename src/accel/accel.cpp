@@ -105,17 +105,6 @@ std::vector<const uint8_t*> find_cut_outs(std::span<const GeometryInstance> inst
     return found;
 }
 
-/// Geometries that are on the upper level: in one place only, and not transformed. (In several places they would be
-/// copied.)
-std::vector<bool> upper_geometries(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances) {
-    std::vector<uint32_t> uses(geometries.size());
-    std::vector<bool> upper(geometries.size());
-    for (const GeometryInstance& i : instances) {
-        upper[i.geometry] = uses[i.geometry]++ == 0 && is_identity(i.world_from_object);
-    }
-    return upper;
-}
-
 /// What a build has to do: every primitive is in one hierarchy, and so is every instance that is not on the upper level
 /// itself. (Those of nothing have no part in it; the last step is larger then.)
 uint64_t work_of(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,

@@ -33,6 +33,8 @@ struct BinaryNode {
 /// Nodes in chunks that never move. Every task has a Source of its own, so that workers meet only over whole chunks.
 class BinaryPool {
 public:
+    static constexpr size_t kChunk = 64;
+
     class Source {
     public:
         explicit Source(BinaryPool& pool) : pool_(pool) {}
@@ -48,7 +50,6 @@ public:
     };
 
 private:
-    static constexpr size_t kChunk = 256;
     BinaryNode* grow() {
         const std::lock_guard lock(mutex_);
         chunks_.push_back(std::make_unique<BinaryNode[]>(kChunk));
@@ -58,6 +59,10 @@ private:
     std::mutex mutex_;
     std::vector<std::unique_ptr<BinaryNode[]>> chunks_;
 };
+
+/// Ranges of which both parts have as many primitives may be divided by two tasks, each with a source of its own: so
+/// there are not more of these than m / kOwnSourceGrain, and what their last chunks waste is bounded (build_memory.h).
+inline constexpr size_t kOwnSourceGrain = 512;
 
 /// What is to become a subtree: primitives [begin, end), under so many splits.
 struct Subtree {

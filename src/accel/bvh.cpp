@@ -20,8 +20,6 @@ constexpr size_t kTaskGrain = 4096;
 constexpr size_t kMaxSahLeaf = 8;
 /// Boxes are split where they overlap by more than this share of the surface of all (as in Stich et al. 2009).
 constexpr float kLeastOverlap = 1e-5f;
-/// Splits of boxes add at most one for this many primitives.
-constexpr size_t kPrimitivesPerCut = 2;
 
 class BinaryBuilder {
 public:
@@ -57,20 +55,22 @@ private:
         move_up(middle, last, gap);
         const size_t right = middle + gap, right_end = last + gap;
         for (BinaryNode*& child : out.child) child = source.next();
-        if (range.size() >= kTaskGrain) {
-            parallel_invoke(
-                [&] {
-                    divide(*out.child[0], begin, middle, right, halves.bounds[0], depth, source);
-                    if (middle - begin < kTaskGrain) done(middle - begin);
-                },
-                [&] {
-                    BinaryPool::Source own(pool_);
-                    divide(*out.child[1], right, right_end, room_end, halves.bounds[1], depth, own);
-                    if (right_end - right < kTaskGrain) done(right_end - right);
-                });
-        } else {
+        const bool large = range.size() >= kTaskGrain;
+        const auto divide_left = [&] {
             divide(*out.child[0], begin, middle, right, halves.bounds[0], depth, source);
-            divide(*out.child[1], right, right_end, room_end, halves.bounds[1], depth, source);
+            if (large && middle - begin < kTaskGrain) done(middle - begin);
+        };
+        const auto divide_right = [&](BinaryPool::Source& from) {
+            divide(*out.child[1], right, right_end, room_end, halves.bounds[1], depth, from);
+            if (large && right_end - right < kTaskGrain) done(right_end - right);
+        };
+        if (large && std::min(middle - begin, right_end - right) >= kOwnSourceGrain) {
+            parallel_invoke(divide_left, [&] {
+                BinaryPool::Source own(pool_);
+                divide_right(own);
+            });
+        } else {
+            divide_left(), divide_right(source);
         }
     }
 

@@ -173,6 +173,15 @@ void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> g
     });
 }
 
+std::vector<bool> upper_geometries(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances) {
+    std::vector<uint32_t> uses(geometries.size());
+    std::vector<bool> upper(geometries.size());
+    for (const GeometryInstance& i : instances) {
+        upper[i.geometry] = uses[i.geometry]++ == 0 && is_identity(i.world_from_object);
+    }
+    return upper;
+}
+
 size_t primitive_count(const Geometry& geometry) {
     return std::visit(
         [](const auto& g) -> size_t {

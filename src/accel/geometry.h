@@ -29,6 +29,9 @@ struct LevelPart {
     uint32_t first, instance, geometry;
 };
 
+/// Geometries that are on the upper level: in one place only, and not transformed. (In several places they would be
+/// copied.)
+std::vector<bool> upper_geometries(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances);
 size_t primitive_count(const Geometry& geometry);
 /// Appends the box of every primitive, with ids from `first_id` on; or says what is wrong with it (bad_input).
 Status append_primitives(const Geometry& geometry, size_t geometry_index, uint32_t first_id,

@@ -45,12 +45,17 @@ Box4 join(const Box4& a, const Box4& b) {
     return both;
 }
 
+static_assert(kReinsertionBytes ==
+              sizeof(FlatNode) + sizeof(BinaryNode*) + sizeof(uint32_t) + sizeof(uint8_t) + sizeof(Move));
+
 class Tree {
 public:
     Tree(BinaryNode& root, uint32_t max_depth) : max_depth_(max_depth) {
         const Box bounds = root.box.box();
         const float scale = 1 / max_component(bounds.hi - bounds.lo);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
+        const size_t nodes = count(root);
+        nodes_.reserve(nodes), origin_.reserve(nodes), parent_.reserve(nodes), height_.reserve(nodes);
         append(root, kNone);
     }
     /// False for a tree with all the levels that it may have.
@@ -110,6 +115,9 @@ private:
     /// The root has nowhere to go; without one of its children it would have only one.
     bool movable(uint32_t node) const { return node != kRoot && parent_[node] != kRoot; }
 
+    static size_t count(const BinaryNode& from) {
+        return from.is_leaf() ? 1 : 1 + count(*from.child[0]) + count(*from.child[1]);
+    }
     uint32_t append(BinaryNode& from, uint32_t parent) {
         const auto index = static_cast<uint32_t>(nodes_.size());
         nodes_.emplace_back();

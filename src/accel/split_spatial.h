@@ -34,6 +34,9 @@ std::optional<SpatialSplit> find_spatial_split(std::span<const BuildPrimitive> p
 /// is on the left.
 Halves apply_spatial_split(std::span<BuildPrimitive> primitives, size_t count, const SpatialSplit& split);
 
+/// Splits of boxes add at most one for this many primitives.
+inline constexpr size_t kPrimitivesPerCut = 2;
+
 /// The surface that both sides of a split share, as a share of that of `all`.
 float overlap(const Halves& halves, const RangeBounds& all);
 

@@ -1,0 +1,93 @@
+#include "accel/build_memory.h"
+
+#include <algorithm>
+
+#include "accel/binary_tree.h"
+#include "accel/geometry.h"
+#include "accel/morton.h"
+#include "accel/reinsert.h"
+#include "accel/split_spatial.h"
+#include "accel/world.h"
+
+namespace steradian {
+namespace {
+
+/// What does not grow with the scene: histograms of sorting, bins, first chunks, and what tasks hold.
+constexpr uint64_t kFixed = uint64_t(1) << 20;
+/// An array that grows by doubling: the old one is still there when the new one is.
+constexpr uint64_t kGrowing = 3;
+
+struct LevelCounts {
+    uint64_t triangles = 0, others = 0;
+    bool split_boxes = false;
+};
+
+/// Of one level, without kFixed.
+BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options) {
+    const uint64_t n = counts.triangles + counts.others;
+    if (n == 0) return {};
+    const bool high_quality = options.builder == BvhBuilder::high_quality;
+    const uint64_t added = high_quality && counts.split_boxes ? n / kPrimitivesPerCut : 0;
+    // In the worst case a leaf holds one primitive, and a node two leaves.
+    const uint64_t m = n + added, triangles = counts.triangles + (counts.triangles ? added : 0);
+    const uint64_t nodes = m + 1, binary_nodes = 2 * m;
+    const uint64_t primitives = n * sizeof(BuildPrimitive), entries = counts.others * sizeof(LeafEntry);
+    const uint64_t ids = triangles * kBlock * sizeof(uint32_t) + counts.others * sizeof(uint32_t);
+    const uint64_t wide = nodes * sizeof(WideNode), compact_nodes = nodes * sizeof(CompactNode);
+    const uint64_t compact_blocks = triangles * kMaxUnitsPerTriangle * sizeof(uint64_t);
+    const bool compact = options.layout == BvhLayout::compact;
+
+    const uint64_t sources = 1 + m / kOwnSourceGrain + (options.builder == BvhBuilder::fast ? 2 + n / 64 : 0);
+    const uint64_t chunks = 1 + binary_nodes / BinaryPool::kChunk + sources;
+    const uint64_t pool =
+        chunks * (BinaryPool::kChunk * sizeof(BinaryNode) + kGrowing * sizeof(void*)) + n / 2;  // and bins
+    uint64_t dividing = 0, ordered = 0;
+    // Sorted along the curve: the primitives, their treelets, where these begin, in both orders, and the leaves.
+    if (options.builder == BvhBuilder::fast)
+        dividing = n * (2 * sizeof(BuildPrimitive) + 2 * kGrowing * sizeof(uint32_t) + kGrowing * sizeof(void*));
+    if (high_quality) {
+        ordered = m * sizeof(BuildPrimitive);
+        dividing = (n + added) * sizeof(BuildPrimitive) + ordered + binary_nodes * kReinsertionBytes;
+    }
+    BuildMemory out;
+    out.result = (compact ? compact_nodes + compact_blocks + kPaddingUnits * sizeof(uint64_t)
+                          : wide + triangles * sizeof(TriangleBlock)) +
+                 entries;
+    const uint64_t gathering = ordered + pool + wide + ids;
+    const uint64_t packing =
+        wide + ids + entries + (compact ? compact_nodes + kGrowing * compact_blocks : triangles * sizeof(TriangleBlock));
+    out.peak = primitives + std::max({pool + dividing, gathering, packing});
+    return out;
+}
+
+}  // namespace
+
+BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                         const AccelOptions& options) {
+    const std::vector<bool> on_upper_level = upper_geometries(geometries, instances);
+    const uint64_t lists = geometries.size() * (sizeof(Level) + kGrowing * (sizeof(LevelPart) + sizeof(LevelView) +
+                                                                            sizeof(ShapesView) + 64)) +
+                           instances.size() * (sizeof(PlacedGeometry) + sizeof(void*) +
+                                               kGrowing * (sizeof(LevelPart) + sizeof(TrianglePart) + sizeof(double)));
+    BuildMemory all{kFixed + lists, kFixed + lists};
+    const auto add = [&](const LevelCounts& counts) {
+        const BuildMemory level = level_memory(counts, options);
+        all.peak = std::max(all.peak, all.result + level.peak);
+        all.result += level.result;
+    };
+    LevelCounts upper{0, 0, true};
+    for (size_t i = 0; i < geometries.size(); ++i) {
+        const bool mesh = std::holds_alternative<TriangleGeometry>(geometries[i]);
+        LevelCounts counts;
+        (mesh ? counts.triangles : counts.others) = primitive_count(geometries[i]);
+        if (!on_upper_level[i])
+            add(counts);
+        else
+            upper.triangles += counts.triangles, upper.others += counts.others;
+    }
+    for (const GeometryInstance& instance : instances) upper.others += !on_upper_level[instance.geometry];
+    add(upper);
+    return all;
+}
+
+}  // namespace steradian
