@@ -1,6 +1,7 @@
 // The builders on what breaks builders.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 #include <thread>
@@ -220,8 +221,8 @@ TEST(Build, CancelledAtEveryQuestion) {
         with_threads(1, [&] {
             int all = 0;
             ASSERT_TRUE(build(way, 1'000'000, all));
-            // All of them in the long tier; a prime step meets every stage.
-            const int step = test::by_tier(7, 1);
+            // All of them in the long tier, fifteen of them all along the build in the quick one.
+            const int step = test::by_tier(std::max(1, all / 15), 1);
             for (int after = 0; after < all; after += step) {
                 int asked = 0;
                 const Result<Accel> accel = build(way, after, asked);

@@ -98,7 +98,7 @@ void cut_at_hits(std::vector<Ray>& rays, std::vector<Hit>& hits, const BruteForc
 
 TEST(Oracle, EveryBitOfEveryHit) {
     const std::vector<TestScene> scenes = hard_scenes();
-    const size_t total = by_tier<size_t>(200'000, 10'000'000);
+    const size_t total = by_tier<size_t>(60'000, 10'000'000);
     size_t hit = 0, shot = 0;
     for (size_t s = 0; s < scenes.size(); ++s) {
         const BruteForce brute(scenes[s]);
@@ -144,7 +144,7 @@ std::vector<Ray> coherent_rays(const TestScene& scene, size_t bundles, uint64_t 
 
 TEST(Oracle, CoherentRays) {
     const std::vector<TestScene> scenes = hard_scenes();
-    const size_t bundles = by_tier<size_t>(200, 10'000);
+    const size_t bundles = by_tier<size_t>(80, 10'000);
     size_t hit = 0, shot = 0;
     for (size_t s = 0; s < scenes.size(); ++s) {
         const BruteForce brute(scenes[s]);
@@ -360,7 +360,7 @@ TEST(Oracle, AnyNumberOfRays) {
 
 TEST(Oracle, NextHitEnumeratesAllHitsInOrder) {
     const std::vector<TestScene> scenes = hard_scenes();
-    const size_t each = by_tier<size_t>(400, 20'000);
+    const size_t each = by_tier<size_t>(120, 20'000);
     for (size_t s = 0; s < scenes.size(); ++s) {
         const BruteForce brute(scenes[s]);
         const std::vector<Accel> built = build_all(scenes[s]);
