@@ -36,7 +36,7 @@ def mesh(triangles, material, light=None):
 
 
 def hall(count, emitting):
-    """The triangles are sixteen meshes of different brightness, and ten single ones."""
+    """The triangles are sixteen meshes of different brightness, and one of ten triangles."""
     rng = random.Random(5)
     single = [triangle(rng) for _ in range(10)]
     groups = [[triangle(rng) for _ in range((count - 10) // 16)] for _ in range(16)]
@@ -47,13 +47,12 @@ def hall(count, emitting):
         objects.append({"type": "sphere", "center": [rng.uniform(-15, 15), 0.6, rng.uniform(-19, 8)], "radius": 0.6,
                         "material": "floor"})
     area = 0.00375
-    for t in single:
-        objects.append(mesh([t], "dark", 2000 if emitting != "none" else None))
+    objects.append(mesh(single, "dark", 2000 if emitting != "none" else None))
     for k, group in enumerate(groups):
         objects.append(mesh(group, "dark", 40 * 0.54 ** k / area * 0.01 if emitting == "all" else None))
     return {
         "version": 1, "render": {"integrator": "path", "max_depth": 4}, "film": {"resolution": SIZE},
-        "camera": {"position": [0, 1.7, 16], "look_at": [0, 1.2, 0], "vertical_fov": 50},
+        "camera": {"position": [0, 3.8, 19], "look_at": [0, 0, 10], "vertical_fov": 40},
         "materials": {"floor": {"type": "diffuse", "reflectance": 0.6, "two_sided": True},
                       "dark": {"type": "diffuse", "reflectance": 0.1, "two_sided": True}},
         "objects": objects, "lights": []}
