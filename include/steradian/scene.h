@@ -131,8 +131,48 @@ struct DiffuseTransmissionMaterial {
     TextureId transmittance{};
 };
 
+/// A number, times the first channel of a texture, clamped to [0, 1].
+struct FloatInput {
+    float value = 0;
+    std::optional<TextureId> texture = std::nullopt;
+};
+/// A colour, times a texture.
+struct ColorInput {
+    Rgb value{1, 1, 1};
+    std::optional<TextureId> texture = std::nullopt;
+};
+
+/// OpenPBR Surface 1.1, both sides: a matte, glassy or metallic base below a coat and fuzz. Names, meaning and defaults
+/// are those of the specification; weights, roughnesses and anisotropies are in [0, 1]. Subsurface scattering is
+/// diffuse, and transmission is tinted at the surface. A roughness of 0 counts as α = 1e-4.
+struct OpenPbrMaterial {
+    float base_weight = 1;
+    ColorInput base_color{{0.8f, 0.8f, 0.8f}};
+    FloatInput base_metalness{0};
+    float base_diffuse_roughness = 0;
+    float specular_weight = 1;    ///< at most 10: scales the reflectance at normal incidence
+    Rgb specular_color{1, 1, 1};  ///< of metals: at 82 degrees; at most 1
+    FloatInput specular_roughness{0.3f};
+    float specular_ior = 1.5f;  ///< inside over outside, > 0
+    float specular_roughness_anisotropy = 0;
+    FloatInput transmission_weight{0};
+    ColorInput transmission_color{};
+    FloatInput subsurface_weight{0};
+    ColorInput subsurface_color{{0.8f, 0.8f, 0.8f}};
+    FloatInput fuzz_weight{0};
+    ColorInput fuzz_color{};
+    float fuzz_roughness = 0.5f;
+    float coat_weight = 0;
+    ColorInput coat_color{};  ///< of what passes the coat twice at normal incidence; at most 1
+    float coat_roughness = 0;
+    float coat_roughness_anisotropy = 0;
+    float coat_ior = 1.6f;  ///< at least 1
+    float coat_darkening = 1;
+    FloatInput geometry_opacity{1};
+};
+
 using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,
-                              ThinGlassMaterial, DiffuseTransmissionMaterial>;
+                              ThinGlassMaterial, DiffuseTransmissionMaterial, OpenPbrMaterial>;
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 

@@ -61,6 +61,16 @@ private:
     void put(const SchlickReflectance& r) { put(r.normal, r.grazing); }
     void put(const ThinGlassMaterial& m) { put(m.eta, m.transmittance); }
     void put(const DiffuseTransmissionMaterial& m) { put(m.reflectance, m.transmittance); }
+    void put(const FloatInput& i) { put(i.value, i.texture); }
+    void put(const ColorInput& i) { put(i.value, i.texture); }
+    void put(const OpenPbrMaterial& m) {
+        put(m.base_weight, m.base_color, m.base_metalness, m.base_diffuse_roughness);
+        put(m.specular_weight, m.specular_color, m.specular_roughness, m.specular_ior, m.specular_roughness_anisotropy);
+        put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color);
+        put(m.fuzz_weight, m.fuzz_color, m.fuzz_roughness);
+        put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
+        put(m.geometry_opacity);
+    }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
     void raw(const std::vector<T>& values) {

@@ -119,6 +119,38 @@ private:
         refers(m.reflectance, s_.textures, "texture");
         refers(m.transmittance, s_.textures, "texture");
     }
+    void unit(float value, const char* what) const { require(value >= 0 && value <= 1, what); }
+    void unit(const FloatInput& input, const char* what) const {
+        unit(input.value, what);
+        if (input.texture) refers(*input.texture, s_.textures, "texture");
+    }
+    void color(const ColorInput& input, const char* what) const {
+        color(input.value, what);
+        if (input.texture) refers(*input.texture, s_.textures, "texture");
+    }
+    void check(const OpenPbrMaterial& m) const {
+        const char* weights = "weights must be between 0 and 1";
+        unit(m.base_weight, weights);
+        for (const FloatInput* w : {&m.base_metalness, &m.transmission_weight, &m.subsurface_weight, &m.fuzz_weight})
+            unit(*w, weights);
+        unit(m.coat_weight, weights);
+        unit(m.coat_darkening, "coat_darkening must be between 0 and 1");
+        unit(m.geometry_opacity, "geometry_opacity must be between 0 and 1");
+        const char* roughness = "roughnesses and anisotropies must be between 0 and 1";
+        unit(m.specular_roughness, roughness);
+        for (const float r : {m.base_diffuse_roughness, m.specular_roughness_anisotropy, m.fuzz_roughness,
+                              m.coat_roughness, m.coat_roughness_anisotropy})
+            unit(r, roughness);
+        const char* colors = "colours must be finite and not negative";
+        for (const ColorInput* c :
+             {&m.base_color, &m.transmission_color, &m.subsurface_color, &m.fuzz_color, &m.coat_color})
+            color(*c, colors);
+        color(m.specular_color, colors);
+        require(max_component(m.specular_color) <= 1, "the specular colour must be at most 1");
+        require(m.specular_weight >= 0 && m.specular_weight <= 10, "specular_weight must be between 0 and 10");
+        require(m.specular_ior >= 0.1f && m.specular_ior <= 10, "specular_ior must be between 0.1 and 10");
+        require(m.coat_ior >= 1.01f && m.coat_ior <= 3, "coat_ior must be between 1.01 and 3");
+    }
     void check(const ConductorMaterial& m) const {
         check(m.reflectance);
         check(m.roughness);

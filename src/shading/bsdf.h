@@ -14,6 +14,8 @@
 
 namespace steradian {
 
+struct OpenPbrTables;  // what its layers reflect, see open_pbr_tables.h
+
 struct DiffuseBsdf {
     Rgb reflectance;
     bool two_sided = false;
@@ -32,6 +34,7 @@ struct MirrorBsdf {
 struct ConductorBsdf {
     struct Schlick {
         Rgb normal, grazing;
+        Rgb dip{};  ///< times μ (1 - μ)⁶: by how much it is darker, most at 82 degrees
     };
     std::variant<ComplexIndex, Schlick> fresnel;
     Rgb mean_fresnel;
@@ -54,8 +57,21 @@ struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
 };
 
+struct OpenPbrBsdf {
+    ConductorBsdf metal;
+    RoughGlassBsdf glass;
+    Rgb specular_color;
+    Rgb diffuse, subsurface_color;
+    Rgb coat_color, darkening{1, 1, 1};
+    Rgb fuzz_color;
+    float metalness = 0, transmission = 0, subsurface = 0, diffuse_roughness = 0;
+    float coat_weight = 0, fuzz_weight = 0, opacity = 1;
+    Microfacets coat;
+    const OpenPbrTables* tables = nullptr;
+};
+
 using Lobe = std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf,
-                          ThinGlassBsdf, DiffuseTransmissionBsdf>;
+                          ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf>;
 
 struct Bsdf {
     Lobe lobe;

@@ -109,6 +109,13 @@ double reflecting_albedo(const Ggx& ggx, Vec3d o) {
     });
 }
 
+double coating_albedo(const Ggx& ggx, Vec3d o, double eta) {
+    return integrate_facets(ggx, o, false, [&](Vec3d h, double oh) {
+        const Vec3d wi = reflect(o, h);
+        return wi.z > 0 ? fresnel_dielectric(oh, eta) * ggx.masking_over_cosine(o, wi) : 0;
+    });
+}
+
 /// eta: the far side's index over that of the side of o.
 double transmitting_albedo(const Ggx& ggx, Vec3d o, double eta) {
     return integrate_facets(ggx, o, true, [&](Vec3d h, double oh) {
@@ -195,6 +202,12 @@ void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo&
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Roughness& roughness) {
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
     out->fill(roughness, Side::outside, reflecting_albedo);
+    return out;
+}
+
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughness& roughness, double eta) {
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
+    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, eta); });
     return out;
 }
 

@@ -36,6 +36,8 @@ class MicrofacetEnergy {
 public:
     /// Facets that reflect everything.
     static std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& roughness);
+    /// Facets of a dielectric that reflect; what refracts is lost. eta: far over near side, > 1.
+    static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness, double eta);
     /// Facets of a dielectric of index eta, inside over outside, that reflect and refract.
     static std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& roughness, double eta);
 

@@ -10,6 +10,7 @@
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/sphere_emitter.h"
 #include "shading/microfacet_energy.h"
+#include "shading/open_pbr_tables.h"
 #include "shading/surface.h"
 #include "shading/surface_error.h"
 #include "shading/texture.h"
@@ -205,6 +206,9 @@ public:
     void operator()(const GlassMaterial& m) {
         const bool visible = std::fabs(m.eta - 1) >= 1e-3f;  // nearer to 1 refraction is lost in the rounding to float
         if (visible) data().energy = energy(m.roughness, m.eta);
+    }
+    void operator()(const OpenPbrMaterial& m) {
+        data().open_pbr = std::make_shared<const OpenPbrTables>(make_open_pbr_tables(m));
     }
     template <class Other>
     void operator()(const Other&) {}

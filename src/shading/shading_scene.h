@@ -15,6 +15,7 @@
 
 namespace steradian {
 
+struct OpenPbrTables;    // what the layers of such a material reflect, see open_pbr_tables.h
 class MicrofacetEnergy;  // what rough surfaces lose, see microfacet_energy.h
 class EnvironmentTable;  // the environment's radiance and its sampling distribution, see environment.h
 
@@ -52,6 +53,7 @@ struct ShadingScene {
     struct MaterialData {
         std::shared_ptr<const MicrofacetEnergy> energy;
         Rgb mean_fresnel;  ///< of metals with a complex index
+        std::shared_ptr<const OpenPbrTables> open_pbr;
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
 

@@ -195,6 +195,54 @@ TEST(NativeScene, DiffuseTransmission) {
     EXPECT_EQ(color(m.transmittance), (Rgb{0.5f, 0.75f, 0}));
 }
 
+TEST(NativeScene, OpenPbr) {
+    const LoadedScene loaded =
+        load_good(scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}}, "materials": {
+        "plain": {"type": "open_pbr"},
+        "set": {"type": "open_pbr", "base_weight": 0.01, "base_color": [0.02, 0, 1], "base_metalness": 0.03,
+                "base_diffuse_roughness": 0.04, "specular_weight": 0.05, "specular_color": 0.06,
+                "specular_roughness": 0.07, "specular_ior": 1.08, "specular_roughness_anisotropy": 0.09,
+                "transmission_weight": 0.1, "transmission_color": 0.11, "subsurface_weight": 0.12,
+                "subsurface_color": 0.13, "fuzz_weight": 0.14, "fuzz_color": 0.15, "fuzz_roughness": 0.16,
+                "coat_weight": 0.17, "coat_color": 0.18, "coat_roughness": 0.19, "coat_roughness_anisotropy": 0.2,
+                "coat_ior": 1.21, "coat_darkening": 0.22, "geometry_opacity": 0.23},
+        "textured": {"type": "open_pbr", "base_color": "t", "specular_roughness": "t"}})"));
+    const auto get = [&](size_t i) { return std::get<OpenPbrMaterial>(loaded.scene.materials[i]); };
+    const OpenPbrMaterial plain = get(0), m = get(1), textured = get(2);
+    EXPECT_EQ(plain.base_color.value, (Rgb{0.8f, 0.8f, 0.8f}));
+    EXPECT_EQ(plain.specular_roughness.value, 0.3f);
+    EXPECT_EQ(plain.coat_ior, 1.6f);
+    EXPECT_EQ(m.base_color.value, (Rgb{0.02f, 0, 1}));
+    const float numbers[] = {m.base_weight,
+                             m.base_color.value.r,
+                             m.base_metalness.value,
+                             m.base_diffuse_roughness,
+                             m.specular_weight,
+                             m.specular_color.g,
+                             m.specular_roughness.value,
+                             m.specular_ior - 1,
+                             m.specular_roughness_anisotropy,
+                             m.transmission_weight.value,
+                             m.transmission_color.value.b,
+                             m.subsurface_weight.value,
+                             m.subsurface_color.value.r,
+                             m.fuzz_weight.value,
+                             m.fuzz_color.value.g,
+                             m.fuzz_roughness,
+                             m.coat_weight,
+                             m.coat_color.value.b,
+                             m.coat_roughness,
+                             m.coat_roughness_anisotropy,
+                             m.coat_ior - 1,
+                             m.coat_darkening,
+                             m.geometry_opacity.value};
+    for (size_t i = 0; i < std::size(numbers); ++i) EXPECT_NEAR(numbers[i], 0.01 * double(i + 1), 1e-6) << i;
+    EXPECT_EQ(textured.base_color.value, (Rgb{1, 1, 1}));
+    EXPECT_EQ(textured.base_color.texture, TextureId{0});
+    EXPECT_EQ(textured.specular_roughness.value, 1);
+    EXPECT_EQ(textured.specular_roughness.texture, TextureId{0});
+}
+
 TEST(NativeScene, RoughAndThinGlass) {
     const LoadedScene loaded = load_good(scene_with(R"("materials": {
         "frosted": {"type": "glass", "roughness": 0.4}, "clear": {"type": "glass"},

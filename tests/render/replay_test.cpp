@@ -117,6 +117,7 @@ TEST(Replay, TracesAddUp) {
 TEST(Replay, WeightsAreThePowerHeuristic) {
     const auto scene = prepared(test::everything_scene());
     RenderSettings settings = small();
+    settings.light_choice = LightChoice::uniform;
     size_t by_light = 0, by_bsdf = 0;
     for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel)
         for (uint64_t i = 0; i < kSamples; ++i) {

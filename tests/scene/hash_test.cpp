@@ -23,6 +23,7 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(ConductorMaterial{SchlickReflectance{}, {}}));
     add<MaterialId>(s.materials, Material(ThinGlassMaterial{}));
     add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{}));
+    add<MaterialId>(s.materials, Material(OpenPbrMaterial{}));
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
@@ -34,6 +35,8 @@ Scene full_scene() {
     s.cameras = {PerspectiveCamera{}, OrthographicCamera{}, PanoramaCamera{}, FisheyeCamera{}};
     return s;
 }
+
+OpenPbrMaterial& open_pbr(Scene& s) { return std::get<OpenPbrMaterial>(s.materials[8]); }
 
 using Change = std::function<void(Scene&)>;
 
@@ -69,6 +72,31 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<ThinGlassMaterial>(s.materials[6]).transmittance.b = 0.5f; },
         [](Scene& s) { std::get<DiffuseTransmissionMaterial>(s.materials[7]).reflectance = TextureId{1}; },
         [](Scene& s) { std::get<DiffuseTransmissionMaterial>(s.materials[7]).transmittance = TextureId{1}; },
+        [](Scene& s) { open_pbr(s).base_weight = 0.5f; },
+        [](Scene& s) { open_pbr(s).base_color.value.g = 0.5f; },
+        [](Scene& s) { open_pbr(s).base_color.texture = TextureId{0}; },
+        [](Scene& s) { open_pbr(s).base_metalness.value = 1; },
+        [](Scene& s) { open_pbr(s).base_metalness.texture = TextureId{1}; },
+        [](Scene& s) { open_pbr(s).base_diffuse_roughness = 1; },
+        [](Scene& s) { open_pbr(s).specular_weight = 0.5f; },
+        [](Scene& s) { open_pbr(s).specular_color.b = 0; },
+        [](Scene& s) { open_pbr(s).specular_roughness.value = 1; },
+        [](Scene& s) { open_pbr(s).specular_ior = 2; },
+        [](Scene& s) { open_pbr(s).specular_roughness_anisotropy = 1; },
+        [](Scene& s) { open_pbr(s).transmission_weight.value = 1; },
+        [](Scene& s) { open_pbr(s).transmission_color.value.r = 0; },
+        [](Scene& s) { open_pbr(s).subsurface_weight.value = 1; },
+        [](Scene& s) { open_pbr(s).subsurface_color.value.r = 0; },
+        [](Scene& s) { open_pbr(s).fuzz_weight.value = 1; },
+        [](Scene& s) { open_pbr(s).fuzz_color.value.b = 0; },
+        [](Scene& s) { open_pbr(s).fuzz_roughness = 1; },
+        [](Scene& s) { open_pbr(s).coat_weight = 1; },
+        [](Scene& s) { open_pbr(s).coat_color.value.r = 0; },
+        [](Scene& s) { open_pbr(s).coat_roughness = 1; },
+        [](Scene& s) { open_pbr(s).coat_roughness_anisotropy = 1; },
+        [](Scene& s) { open_pbr(s).coat_ior = 2; },
+        [](Scene& s) { open_pbr(s).coat_darkening = 0; },
+        [](Scene& s) { open_pbr(s).geometry_opacity.value = 0; },
         [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },

@@ -73,6 +73,47 @@ void add_glass(std::vector<MaterialCase>& out) {
     out.push_back({"thin glass green", ThinGlassMaterial{1.5f, {0.5f, 0.9f, 0.6f}}, false});
 }
 
+void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
+    const auto add_case = [&](std::string name, const OpenPbrMaterial& m, bool lossless, float peak) {
+        const bool transmits = m.transmission_weight.value > 0;
+        MaterialCase c{"open_pbr " + std::move(name), m, lossless, peak, transmits ? m.specular_ior : 1};
+        c.energy_error = transmits ? 1e-2 : 2e-3;
+        c.reciprocal = m.base_metalness.value == 1 && m.coat_weight == 0 && m.fuzz_weight.value == 0;
+        out.push_back(c);
+    };
+    OpenPbrMaterial white;
+    white.base_color.value = {1, 1, 1};
+    white.specular_roughness.value = 0.5f;
+    add_case("default", {}, false, 0.09f);
+    add_case("white", white, true, 0.25f);
+    OpenPbrMaterial m = white;
+    m.specular_roughness_anisotropy = 0.7f, m.base_diffuse_roughness = 0.8f;
+    add_case("white with a grain", m, true, 0.1f);
+    m = white;
+    m.base_metalness.value = 1;
+    add_case("white metal", m, true, 0.25f);
+    m.base_color.value = {0.9f, 0.5f, 0.3f}, m.specular_color = {0.5f, 0.9f, 0.4f}, m.specular_weight = 0.7f;
+    add_case("tinted metal", m, false, 0.25f);
+    m = white;
+    m.coat_weight = 1, m.coat_roughness = 0.4f;
+    add_case("white coated", m, true, 0.16f);
+    m.base_color.value = {0.8f, 0.3f, 0.1f}, m.base_metalness.value = 0.5f, m.coat_color.value = {0.9f, 0.7f, 1};
+    add_case("coloured coated", m, false, 0.16f);
+    m = white;
+    m.fuzz_weight.value = 1, m.subsurface_weight.value = 0.5f, m.subsurface_color.value = {1, 1, 1};
+    add_case("white fuzzy", m, true, 0.25f);
+    m.fuzz_roughness = 0.1f, m.fuzz_color.value = {0.2f, 0.5f, 1}, m.coat_weight = 0.7f, m.coat_roughness = 0.6f;
+    add_case("coated and fuzzy", m, false, 0.25f);
+    m = white;
+    m.transmission_weight.value = 1;
+    add_case("glass", m, true, 0.12f);
+    m.transmission_weight.value = 0.6f, m.base_metalness = {0.5f, level}, m.transmission_color.value = {1, 0.8f, 0.6f};
+    add_case("of everything", m, false, 0.12f);
+    m = white;
+    m.specular_roughness = {1, level}, m.coat_weight = 0.5f, m.coat_roughness = 0.3f;
+    add_case("white textured", m, true, 0.09f);
+}
+
 }  // namespace
 
 MaterialScene::MaterialScene() {
@@ -80,13 +121,13 @@ MaterialScene::MaterialScene() {
     const auto texture = [&](Rgb value) { return add<TextureId>(scene.textures, Texture{ConstantTexture{value}}); };
     const TextureId white = texture({1, 1, 1}), orange = texture({0.8f, 0.5f, 0.2f}), level = texture({0.7f, 0, 0});
     const TextureId black = texture({0, 0, 0}), level_all = texture({0.7f, 0.2f, 0.5f}),
-                    level_rest = texture({0.3f, 0.8f, 0.5f});
+                    level_rest = texture({0.3f, 0.8f, 0.5f}), rest = texture({0.2f, 0.1f, 0.6f});
     cases_.push_back({"diffuse", DiffuseMaterial{orange, false}});
     cases_.push_back({"diffuse two-sided white", DiffuseMaterial{white, true}, true});
     for (const float roughness : {1e-3f, 0.5f, 1.0f})
         cases_.push_back({"diffuse rough white " + number(roughness), DiffuseMaterial{white, true, roughness}, true});
     cases_.push_back({"diffuse rough", DiffuseMaterial{orange, false, 0.7f}});
-    cases_.push_back({"leaf", DiffuseTransmissionMaterial{orange, level}});
+    cases_.push_back({"leaf", DiffuseTransmissionMaterial{orange, rest}});
     cases_.push_back({"diffuse transmission lossless", DiffuseTransmissionMaterial{level_rest, level_all}, true});
     cases_.push_back({"diffuse transmission only", DiffuseTransmissionMaterial{black, white}, true});
     cases_.push_back({"refraction 1.5", RefractionMaterial{1.5f}});
@@ -97,6 +138,7 @@ MaterialScene::MaterialScene() {
     add_conductors(cases_, white, orange);
     add_textured(cases_, white, level);
     add_glass(cases_);
+    add_open_pbr(cases_, level);
 
     const ShapeId shape = add<ShapeId>(scene.shapes, Shape{Rectangle{}});
     for (const MaterialCase& c : cases_) {

@@ -18,6 +18,7 @@ struct MaterialCase {
     float peak = 1;
     float eta = 1;  ///< index inside over outside
     double energy_error = 1e-3;
+    bool reciprocal = true;  ///< layers that let pass what they do not reflect are not
 };
 
 /// Cases of one scene; a Bsdf refers to its tables.

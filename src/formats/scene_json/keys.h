@@ -36,6 +36,30 @@ inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance", 
 inline constexpr Key kMirror[] = {"type", "reflectance"};
 inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance"};
 inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance"};
+inline constexpr Key kOpenPbr[] = {"type",
+                                   "base_weight",
+                                   "base_color",
+                                   "base_metalness",
+                                   "base_diffuse_roughness",
+                                   "specular_weight",
+                                   "specular_color",
+                                   "specular_roughness",
+                                   "specular_ior",
+                                   "specular_roughness_anisotropy",
+                                   "transmission_weight",
+                                   "transmission_color",
+                                   "subsurface_weight",
+                                   "subsurface_color",
+                                   "fuzz_weight",
+                                   "fuzz_color",
+                                   "fuzz_roughness",
+                                   "coat_weight",
+                                   "coat_color",
+                                   "coat_roughness",
+                                   "coat_roughness_anisotropy",
+                                   "coat_ior",
+                                   "coat_darkening",
+                                   "geometry_opacity"};
 inline constexpr Key kConductor[] = {"type",      "metal", "n",   "k", "reflectance", "edge_reflectance",
                                      "roughness", "alpha", "tint"};
 
@@ -85,7 +109,8 @@ inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiff
                                                 {"mirror_material", keys::kMirror},
                                                 {"conductor_material", keys::kConductor},
                                                 {"thin_glass_material", keys::kThinGlass},
-                                                {"diffuse_transmission_material", keys::kDiffuseTransmission}};
+                                                {"diffuse_transmission_material", keys::kDiffuseTransmission},
+                                                {"open_pbr_material", keys::kOpenPbr}};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
                                              {"sphere_shape", keys::kSphereShape},
                                              {"rectangle_shape", keys::kRectangleShape},
@@ -108,7 +133,7 @@ inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
 // The values of "type", in the order of the specifications above and of the enumerations that the readers use.
 inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard"};
 inline constexpr std::string_view kMaterialTypes[] = {
-    "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission"};
+    "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission", "open_pbr"};
 inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};

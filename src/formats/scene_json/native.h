@@ -34,6 +34,9 @@ private:
     /// "roughness" or "alpha": a number, two, or a texture.
     Roughness read_roughness(ObjectReader& material);
     ConductorMaterial read_conductor(ObjectReader& material);
+    FloatInput read_input(ObjectReader& material, std::string_view key, FloatInput fallback);
+    ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback);
+    OpenPbrMaterial read_open_pbr(ObjectReader& material);
     DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
     void read_materials(Value value);
     MaterialId read_material(Value value, const std::string& name);

@@ -200,6 +200,9 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             material = sheet;
             break;
         }
+        case 7:
+            material = read_open_pbr(reader);
+            break;
         default:
             material = read_diffuse_transmission(reader);
             break;

@@ -33,7 +33,11 @@ inline bool lobe_has_direction(const ConductorBsdf& lobe) { return lobe.facets.a
 inline Rgb fresnel(const ConductorBsdf& lobe, double cosine) {
     if (const auto* complex = std::get_if<ComplexIndex>(&lobe.fresnel)) return fresnel_conductor(cosine, *complex);
     const auto& schlick = std::get<ConductorBsdf::Schlick>(lobe.fresnel);
-    return fresnel_schlick(cosine, schlick.normal, schlick.grazing);
+    const double mu = clamp_to(cosine, 0.0, 1.0), m2 = (1 - mu) * (1 - mu);
+    const Rgb f = fresnel_schlick(mu, schlick.normal, schlick.grazing);
+    const auto dip = static_cast<float>(mu * m2 * m2 * m2);
+    return {max_of(f.r - schlick.dip.r * dip, 0.0f), max_of(f.g - schlick.dip.g * dip, 0.0f),
+            max_of(f.b - schlick.dip.b * dip, 0.0f)};
 }
 
 /// What part of the light leaves after more than one bounce when facets reflect all of it: also the probability of

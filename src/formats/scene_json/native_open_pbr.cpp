@@ -1,0 +1,56 @@
+#include "formats/scene_json/native.h"
+
+namespace steradian::scene_json {
+namespace {
+
+constexpr Range kUnit{0, 1};
+
+}  // namespace
+
+FloatInput NativeLoader::read_input(ObjectReader& material, std::string_view key, FloatInput fallback) {
+    const auto value = material.find(key);
+    if (!value) return fallback;
+    if (const auto texture = find_texture(*value)) return {1, texture};
+    return {json::read_number(source_, *value, quoted(key), kUnit)};
+}
+
+ColorInput NativeLoader::read_input(ObjectReader& material, std::string_view key, ColorInput fallback) {
+    const auto value = material.find(key);
+    if (!value) return fallback;
+    if (const auto texture = find_texture(*value)) return {{1, 1, 1}, texture};
+    return {json::read_color(source_, *value, quoted(key), kUnit)};
+}
+
+OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
+    OpenPbrMaterial m;
+    const auto input = [&](std::string_view key, auto& in) { in = read_input(material, key, in); };
+    const auto number = [&](std::string_view key, float& x, Range range = kUnit) {
+        x = material.number_or(key, x, range);
+    };
+    number("base_weight", m.base_weight);
+    input("base_color", m.base_color);
+    input("base_metalness", m.base_metalness);
+    number("base_diffuse_roughness", m.base_diffuse_roughness);
+    number("specular_weight", m.specular_weight, {0, 10});
+    m.specular_color = material.color_or("specular_color", m.specular_color, kUnit);
+    input("specular_roughness", m.specular_roughness);
+    number("specular_ior", m.specular_ior, {0.1, 10});
+    number("specular_roughness_anisotropy", m.specular_roughness_anisotropy);
+    input("transmission_weight", m.transmission_weight);
+    input("transmission_color", m.transmission_color);
+    input("subsurface_weight", m.subsurface_weight);
+    input("subsurface_color", m.subsurface_color);
+    input("fuzz_weight", m.fuzz_weight);
+    input("fuzz_color", m.fuzz_color);
+    number("fuzz_roughness", m.fuzz_roughness);
+    number("coat_weight", m.coat_weight);
+    input("coat_color", m.coat_color);
+    number("coat_roughness", m.coat_roughness);
+    number("coat_roughness_anisotropy", m.coat_roughness_anisotropy);
+    number("coat_ior", m.coat_ior, {1.01, 3});
+    number("coat_darkening", m.coat_darkening);
+    input("geometry_opacity", m.geometry_opacity);
+    return m;
+}
+
+}  // namespace steradian::scene_json

@@ -1,0 +1,121 @@
+#include "shading/open_pbr_tables.h"
+
+#include "math/elementary.h"
+#include "shading/fresnel.h"
+
+namespace steradian {
+namespace {
+
+/// Entries are dense towards grazing angles.
+double from_entry(double t) { return t * t; }
+double to_entry(double mu) { return std::sqrt(clamp_to(mu, 0.0, 1.0)); }
+
+/// As far as tables go: α of a roughness of 1, which the texture scales by its square.
+Roughness table_roughness(Vec2 alpha, bool textured) {
+    Roughness out;
+    const auto value = [](float a) { return max_of(std::sqrt(a), 0.01f); };
+    out.value = {min_of(value(alpha.x), 1.0f), min_of(value(alpha.y), 1.0f)};
+    if (textured) out.texture = TextureId{};
+    return out;
+}
+
+/// The index whose normal reflectance is `weight` times that of eta.
+double weighted_index(double eta, double weight) {
+    const double f = (eta - 1) / (eta + 1);
+    const double e = min_of(std::sqrt(weight) * std::fabs(f), 0.999) * (eta < 1 ? -1 : 1);
+    return (1 + e) / (1 - e);
+}
+
+double mean_fresnel(double eta) {
+    constexpr int kSteps = 256;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double mu = (i + 0.5) / kSteps;
+        sum += 2 * mu * fresnel_dielectric(mu, eta) / kSteps;
+    }
+    return sum;
+}
+
+}  // namespace
+
+FuzzTable::FuzzTable(float roughness) {
+    inverse_ = 1 / clamp_to(static_cast<double>(roughness), 0.07, 1.0);
+    constexpr int kSteps = 96;
+    double most = 0;
+    for (size_t entry = 0; entry < albedo_.size(); ++entry) {
+        const double mu = max_of(from_entry(double(entry) / double(albedo_.size() - 1)), 1e-4);
+        const Vec3d wo{std::sqrt((1 - mu) * (1 + mu)), 0, mu};
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const double t = (i + 0.5) / kSteps, z = t * t, s = std::sqrt((1 - z) * (1 + z));
+                const double phi = std::numbers::pi * (j + 0.5) / kSteps;
+                sum += eval(wo, {s * math::cos(phi), s * math::sin(phi), z}).r * 2 * t * 2 * std::numbers::pi;
+            }
+        albedo_[entry] = sum / (kSteps * kSteps);
+        most = max_of(most, albedo_[entry]);
+    }
+    // This masking is not derived from the distribution, so nothing else keeps it from making energy.
+    if (most > 1) {
+        scale_ = 1 / most;
+        for (double& a : albedo_) a *= scale_;
+    }
+}
+
+Rgb FuzzTable::eval(Vec3d wo, Vec3d wi) const noexcept {
+    const Vec3d h = normalize(wo + wi);
+    const double sine2 = max_of((1 - h.z) * (1 + h.z), 0.0);
+    const double d = sine2 > 0 ? (2 + inverse_) * math::pow(sine2, inverse_ / 2) / (2 * std::numbers::pi) : 0;
+    const double f = scale_ * d * wi.z / (4 * (wo.z + wi.z - wo.z * wi.z));
+    return {static_cast<float>(f), static_cast<float>(f), static_cast<float>(f)};
+}
+
+double FuzzTable::albedo(double mu) const noexcept {
+    const double t = to_entry(mu) * double(albedo_.size() - 1);
+    const size_t i = min_of(static_cast<size_t>(t), albedo_.size() - 2);
+    const double f = t - double(i);
+    return min_of(albedo_[i] * (1 - f) + albedo_[i + 1] * f, 1.0);
+}
+
+Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept {
+    const double across = 1 - static_cast<double>(anisotropy), r2 = static_cast<double>(roughness) * roughness;
+    const double along = r2 * std::sqrt(2 / (1 + across * across));
+    return {static_cast<float>(along), static_cast<float>(across * along)};
+}
+
+float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noexcept {
+    if (m.coat_weight == 0) return specular_roughness;
+    const auto fourth = [](double x) { return x * x * x * x; };
+    const double r = specular_roughness, sum = fourth(r) + 2 * fourth(m.coat_roughness);
+    const double rougher = std::sqrt(std::sqrt(min_of(sum, 1.0)));
+    return static_cast<float>(r + (rougher - r) * m.coat_weight);
+}
+
+OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m) {
+    OpenPbrTables out;
+    out.textured = m.specular_roughness.texture.has_value();
+    const float roughness = out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value);
+    const Roughness base = table_roughness(open_pbr_alpha(roughness, m.specular_roughness_anisotropy), out.textured);
+    out.coat_eta = m.coat_ior;
+    // Under a coat the index is relative to the coat's. Seen from outside it reflects like its inverse: what would be
+    // totally reflected has not got through the coat.
+    const double below = m.specular_ior / (1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight);
+    const double weighted = weighted_index(below, m.specular_weight);
+    out.eta_outside = weighted < 1 ? 1 / weighted : weighted;
+    out.eta = static_cast<float>(weighted_index(m.specular_ior, m.specular_weight));
+    if (std::fabs(out.eta - 1) < 1e-3f) out.eta = 1.001f;  // nearer to 1 refraction is lost in the rounding to float
+    out.metal = MicrofacetEnergy::reflecting(base);
+    out.dielectric = MicrofacetEnergy::coating(base, out.eta_outside);
+    const bool transmits = m.transmission_weight.value > 0;
+    if (transmits) out.glass = MicrofacetEnergy::transmitting(base, out.eta);
+    if (m.coat_weight > 0) {
+        const Vec2 alpha = open_pbr_alpha(m.coat_roughness, m.coat_roughness_anisotropy);
+        out.coat = MicrofacetEnergy::coating(table_roughness(alpha, false), out.coat_eta);
+        out.coat_normal_reflectance = fresnel_dielectric(1, out.coat_eta);
+        out.coat_inner_reflectance = 1 - (1 - mean_fresnel(out.coat_eta)) / (out.coat_eta * out.coat_eta);
+    }
+    if (m.fuzz_weight.value > 0) out.fuzz = std::make_shared<const FuzzTable>(m.fuzz_roughness);
+    return out;
+}
+
+}  // namespace steradian

@@ -1,0 +1,45 @@
+// What an OpenPbrMaterial's layers reflect, as tables that are computed when a scene is made.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "math/vector.h"
+#include "shading/microfacet_energy.h"
+#include "steradian/scene.h"
+
+namespace steradian {
+
+/// Fibres that stand up from a surface: the distribution of A. C. Estevez and C. Kulla, "Production Friendly Microfacet
+/// Sheen BRDF", 2017, equation 2, with the masking of D. Neubelt and M. Pettineo, "Crafting a Next-Gen Material
+/// Pipeline for The Order: 1886", 2013. The roughness is clamped to [0.07, 1].
+class FuzzTable {
+public:
+    explicit FuzzTable(float roughness);
+    /// f cos θ_i, white; both above the surface.
+    Rgb eval(Vec3d wo, Vec3d wi) const noexcept;
+    /// What is reflected of the light from the cosine mu, at most 1.
+    double albedo(double mu) const noexcept;
+
+private:
+    double inverse_ = 1, scale_ = 1;
+    std::array<double, 64> albedo_{};
+};
+
+struct OpenPbrTables {
+    bool textured = false;                     ///< the tables of the base are over its roughness as well
+    float eta = 1.5f;                          ///< of the base as a body: inside over outside
+    double eta_outside = 1.5, coat_eta = 1.6;  ///< of reflections from outside
+    double coat_normal_reflectance = 0, coat_inner_reflectance = 0;
+    std::shared_ptr<const MicrofacetEnergy> metal, dielectric, glass;  ///< of the base; glass: where it transmits
+    std::shared_ptr<const MicrofacetEnergy> coat;                      ///< null without a coat
+    std::shared_ptr<const FuzzTable> fuzz;                             ///< null without fuzz
+};
+
+/// α along u and across: section "Microfacet model" of the specification.
+Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept;
+/// Of the base as roughened by the coat.
+float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noexcept;
+OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m);
+
+}  // namespace steradian
