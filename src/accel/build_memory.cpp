@@ -54,8 +54,8 @@ BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options)
                           : wide + triangles * sizeof(TriangleBlock)) +
                  entries;
     const uint64_t gathering = ordered + pool + wide + ids;
-    const uint64_t packing =
-        wide + ids + entries + (compact ? compact_nodes + kGrowing * compact_blocks : triangles * sizeof(TriangleBlock));
+    const uint64_t packing = wide + ids + entries +
+                             (compact ? compact_nodes + kGrowing * compact_blocks : triangles * sizeof(TriangleBlock));
     out.peak = primitives + std::max({pool + dividing, gathering, packing});
     return out;
 }
@@ -65,10 +65,11 @@ BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options)
 BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                          const AccelOptions& options) {
     const std::vector<bool> on_upper_level = upper_geometries(geometries, instances);
-    const uint64_t lists = geometries.size() * (sizeof(Level) + kGrowing * (sizeof(LevelPart) + sizeof(LevelView) +
-                                                                            sizeof(ShapesView) + 64)) +
-                           instances.size() * (sizeof(PlacedGeometry) + sizeof(void*) +
-                                               kGrowing * (sizeof(LevelPart) + sizeof(TrianglePart) + sizeof(double)));
+    const uint64_t lists =
+        geometries.size() *
+            (sizeof(Level) + kGrowing * (sizeof(LevelPart) + sizeof(LevelView) + sizeof(ShapesView) + 64)) +
+        instances.size() * (sizeof(PlacedGeometry) + sizeof(void*) +
+                            kGrowing * (sizeof(LevelPart) + sizeof(TrianglePart) + sizeof(double)));
     BuildMemory all{kFixed + lists, kFixed + lists};
     const auto add = [&](const LevelCounts& counts) {
         const BuildMemory level = level_memory(counts, options);

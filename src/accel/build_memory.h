@@ -14,8 +14,8 @@ struct BuildMemory {
     uint64_t peak = 0;    ///< held at once during the build, what there is of the result included
 };
 
-/// What Accel::build takes at most for these, on any number of workers, whatever the coordinates are: there is room for a
-/// leaf for every triangle and a node for every leaf. With some thousand primitives or more the peak is within eight
+/// What Accel::build takes at most for these, on any number of workers, whatever the coordinates are: there is room for
+/// a leaf for every triangle and a node for every leaf. With some thousand primitives or more the peak is within eight
 /// times what is really held, and the result within sixteen times (tests/accel/memory_test.cpp).
 BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                          const AccelOptions& options);
