@@ -97,7 +97,7 @@ void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     m = white;
     m.coat_weight = 1, m.coat_roughness = 0.4f;
     add_case("white coated", m, true, 0.16f);
-    m.base_color.value = {0.8f, 0.3f, 0.1f}, m.base_metalness.value = 0.5f, m.coat_color.value = {0.9f, 0.7f, 1};
+    m.base_color.value = {0.8f, 0.5f, 0.3f}, m.base_metalness.value = 0.5f, m.coat_color.value = {0.9f, 0.7f, 1};
     add_case("coloured coated", m, false, 0.16f);
     m = white;
     m.fuzz_weight.value = 1, m.subsurface_weight.value = 0.5f, m.subsurface_color.value = {1, 1, 1};
