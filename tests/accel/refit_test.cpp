@@ -247,7 +247,7 @@ TEST(Refit, VerticesThatMoveApartAndBack) {
     TriangleMesh sheet;
     for (int y = 0; y < 60; ++y)
         for (int x = 0; x < 60; ++x) {
-            const auto at = [](int i, int j) { return Vec3(float(i), float(j), float(i * j % 3)); };
+            const auto at = [](int i, int j) { return Vec3{float(i), float(j), float(i * j % 3)}; };
             sheet.add(at(x, y), at(x + 1, y), at(x + 1, y + 1));
             sheet.add(at(x, y), at(x + 1, y + 1), at(x, y + 1));
         }

@@ -220,13 +220,14 @@ inline std::optional<Vec3d> sample_local(const OpenPbrBsdf& lobe, Vec3d wo, bool
         left -= p;
         return false;
     };
-    const auto off_facets = [&](const Microfacets& facets) -> std::optional<Vec3d> {
-        const Vec3d wi = reflect(wo, facets.ggx().sample_visible(wo, u));
-        return wi.z > 0 ? std::optional(wi) : std::nullopt;
+    // What facets reflect into the surface is lost: it must not pass for something that the glass transmits.
+    const auto above = [](std::optional<Vec3d> wi) { return wi && wi->z > 0 ? wi : std::nullopt; };
+    const auto off_facets = [&](const Microfacets& facets) {
+        return above(reflect(wo, facets.ggx().sample_visible(wo, u)));
     };
     if (chooses(s.p_fuzz)) return warp::hemisphere(u);
     if (chooses(s.p_coat)) return off_facets(lobe.coat);
-    if (chooses(s.p_metal)) return sample_local(lobe.metal, wo, outside, static_cast<float>(left), u);
+    if (chooses(s.p_metal)) return above(sample_local(lobe.metal, wo, outside, static_cast<float>(left), u));
     if (chooses(s.p_dielectric)) return off_facets(lobe.metal.facets);
     if (chooses(s.p_glass)) return sample_local(lobe.glass, wo, outside, static_cast<float>(left), u);
     if (!(s.p_diffuse > 0)) return std::nullopt;
