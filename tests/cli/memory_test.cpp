@@ -2,35 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <cstring>
 
 #include "program.h"
 
 namespace steradian::test {
 namespace {
-
-/// A binary PLY file with a grid of 2 n² triangles.
-std::string grid(uint32_t n) {
-    const uint32_t vertices = (n + 1) * (n + 1), faces = 2 * n * n;
-    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
-                      "\nproperty list uchar uint vertex_indices\nend_header\n";
-    const auto put = [&](auto value) {
-        char bytes[sizeof value];
-        std::memcpy(bytes, &value, sizeof value);
-        ply.append(bytes, sizeof value);
-    };
-    for (uint32_t y = 0; y <= n; ++y)
-        for (uint32_t x = 0; x <= n; ++x)
-            put(static_cast<float>(x)), put(static_cast<float>(y)), put(static_cast<float>(x * 7 % 11));
-    for (uint32_t y = 0; y < n; ++y)
-        for (uint32_t x = 0; x < n; ++x) {
-            const uint32_t a = y * (n + 1) + x, b = a + n + 1;
-            put(uint8_t(3)), put(a), put(a + 1), put(b + 1);
-            put(uint8_t(3)), put(a), put(b + 1), put(b);
-        }
-    return ply;
-}
 
 class Memory : public CommandTest {
 protected:
@@ -50,7 +26,7 @@ protected:
 
 TEST_F(Memory, TheEstimateForAMeshIsRight) {
     if (kSanitized) GTEST_SKIP() << "under a sanitizer";
-    spit(folder_.file("grid.ply"), grid(700));  // 980 000 triangles
+    spit(folder_.file("grid.ply"), grid_ply(700));  // 980 000 triangles
     expect_estimate("grid.ply", {});
 }
 
@@ -75,7 +51,7 @@ TEST_F(Memory, TheEstimateForManyLightsIsRight) {
 
 TEST_F(Memory, ASceneThatDoesNotFitIsRefusedBeforeTheHierarchyIsBuilt) {
     if (kSanitized) GTEST_SKIP() << "under a sanitizer";
-    spit(folder_.file("grid.ply"), grid(1200));  // 2.9 million triangles: 52 MB as they are, 300 MB to render
+    spit(folder_.file("grid.ply"), grid_ply(1200));  // 2.9 million triangles: 52 MB as they are, 300 MB to render
     const Outcome o =
         Process(folder_, {"render", "grid.ply", "--threads", "1", "-o", "a.png"}, limit_memory<(350 << 20)>).wait();
     EXPECT_EQ(o.code, 4) << o.err;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -146,5 +147,28 @@ protected:
 
     TemporaryFolder folder_;
 };
+
+/// A binary PLY file with a grid of 2 n² triangles.
+inline std::string grid_ply(uint32_t n) {
+    const uint32_t vertices = (n + 1) * (n + 1), faces = 2 * n * n;
+    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
+                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
+                      "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const auto put = [&](auto value) {
+        char bytes[sizeof value];
+        std::memcpy(bytes, &value, sizeof value);
+        ply.append(bytes, sizeof value);
+    };
+    for (uint32_t y = 0; y <= n; ++y)
+        for (uint32_t x = 0; x <= n; ++x)
+            put(static_cast<float>(x)), put(static_cast<float>(y)), put(static_cast<float>(x * 7 % 11));
+    for (uint32_t y = 0; y < n; ++y)
+        for (uint32_t x = 0; x < n; ++x) {
+            const uint32_t a = y * (n + 1) + x, b = a + n + 1;
+            put(uint8_t(3)), put(a), put(a + 1), put(b + 1);
+            put(uint8_t(3)), put(a), put(b + 1), put(b);
+        }
+    return ply;
+}
 
 }  // namespace steradian::test

@@ -79,23 +79,6 @@ TEST_F(Signals, ASecondSignalEndsTheRenderAtOnceAndLeavesTheFilesAlone) {
     }
 }
 
-/// A square of n * n * 2 triangles as binary PLY.
-std::string grid_ply(uint32_t n) {
-    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string((n + 1) * (n + 1)) +
-                      "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                      std::to_string(2 * n * n) + "\nproperty list uchar uint vertex_indices\nend_header\n";
-    const auto put = [&](auto x) { out.append(reinterpret_cast<const char*>(&x), sizeof(x)); };
-    for (uint32_t y = 0; y <= n; ++y)
-        for (uint32_t x = 0; x <= n; ++x) put(float(x)), put(float(y)), put(float(x * 7 % 11));
-    for (uint32_t y = 0; y < n; ++y)
-        for (uint32_t x = 0; x < n; ++x) {
-            const uint32_t a = y * (n + 1) + x, b = a + n + 1;
-            put(uint8_t(3)), put(a), put(a + 1), put(b + 1);
-            put(uint8_t(3)), put(a), put(b + 1), put(b);
-        }
-    return out;
-}
-
 /// A terminal for the program's messages, where every step is shown at once.
 struct Terminal {
     int ours = -1;
