@@ -100,9 +100,12 @@ inline Interval slab_interval(const Box& box, const SlabRay& ray) {
 inline bool canonical(const Ray& in, Ray& out) {
     if (!is_finite(in.o) || !is_finite(in.d)) return false;
     out = in;
-    out.tmin = in.tmin > 0 ? in.tmin : 0.0f;
+    // Nearly always nothing is to be done, and what is written again here is waited for where the ray is copied next.
+    if (!(in.tmin >= 0) || std::signbit(in.tmin)) [[unlikely]]
+        out.tmin = 0;
     for (int axis = 0; axis < 3; ++axis)
-        if (std::fabs(in.d[axis]) < kMinDirection) out.d[axis] = std::copysign(0.0f, in.d[axis]);
+        if (std::fabs(in.d[axis]) < kMinDirection) [[unlikely]]
+            out.d[axis] = std::copysign(0.0f, in.d[axis]);
     return max_component(abs(out.d)) > 0 && out.tmin <= out.tmax && out.tmin < kInfinity;
 }
 

@@ -28,7 +28,8 @@ namespace steradian {
 /// The axis of the largest component of a direction.
 inline int dominant_axis(Vec3 d) {
     const Vec3 size = abs(d);
-    return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+    const int of_x_and_y = size.x >= size.y ? 0 : 1;
+    return max_of(size.x, size.y) >= size.z ? of_x_and_y : 2;
 }
 
 /// A ray as the triangle test wants it.
@@ -41,8 +42,9 @@ struct TriangleRay {
     TriangleRay() = default;
     /// `ray` must be canonical.
     explicit TriangleRay(const Ray& ray) {
+        constexpr int kAfter[] = {1, 2, 0, 1};
         const int z = dominant_axis(ray.d);
-        axis[0] = (z + 1) % 3, axis[1] = (z + 2) % 3, axis[2] = z;
+        axis[0] = kAfter[z], axis[1] = kAfter[z + 1], axis[2] = z;
         for (int i = 0; i < 3; ++i) o[i] = ray.o[axis[i]];
         d_z = ray.d[z];
         shear_x = ray.d[axis[0]] / d_z;

@@ -8,7 +8,7 @@ namespace steradian {
 namespace {
 
 #if defined(__x86_64__)
-uint64_t read_mode() { return _mm_getcsr(); }
+uint64_t read_mode() { return _mm_getcsr() & ~0x3fu; }  // without what has happened so far
 void write_mode(uint64_t mode) { _mm_setcsr(static_cast<unsigned>(mode)); }
 constexpr uint64_t kMode = 0x1f80;  // all exceptions masked, round to nearest, no flush to zero, no denormals as zero
 #elif defined(__aarch64__)
@@ -25,7 +25,12 @@ constexpr uint64_t kMode = 0;
 
 }  // namespace
 
-FloatMode::FloatMode() noexcept : saved_(read_mode()) { write_mode(kMode); }
-FloatMode::~FloatMode() { write_mode(saved_); }
+// Writing the mode makes the processor wait for all that is on its way, which a single ray would feel.
+FloatMode::FloatMode() noexcept : saved_(read_mode()) {
+    if (saved_ != kMode) write_mode(kMode);
+}
+FloatMode::~FloatMode() {
+    if (saved_ != kMode) write_mode(saved_);
+}
 
 }  // namespace steradian

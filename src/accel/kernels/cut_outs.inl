@@ -2,7 +2,9 @@
 
 void occluded_or_cut_out(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
     if (count == 1) {
-        *result = occlusion(trace_one<Mode::opaque>(world, *rays, nullptr));
+        Hit hit;
+        trace_one<Mode::opaque>(world, *rays, nullptr, hit);
+        *result = occlusion(hit);
         return;
     }
     trace<Mode::opaque>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });

@@ -2,21 +2,23 @@
 
 void intersect(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
     if (count == 1) {
-        *hits = trace_one<Mode::closest>(world, *rays, nullptr);
+        trace_one<Mode::closest>(world, *rays, nullptr, *hits);
         return;
     }
     trace<Mode::closest>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
 }
 void occluded(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
     if (count == 1) {
-        *result = trace_one<Mode::any>(world, *rays, nullptr).found();
+        Hit hit;
+        trace_one<Mode::any>(world, *rays, nullptr, hit);
+        *result = hit.found();
         return;
     }
     trace<Mode::any>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = hit.found(); });
 }
 void next_hit(const World& world, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept {
     if (count == 1) {
-        *hits = trace_one<Mode::after>(world, *rays, after);
+        trace_one<Mode::after>(world, *rays, after, *hits);
         return;
     }
     trace<Mode::after>(world, rays, after, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });

@@ -27,7 +27,7 @@ inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu;
 /// A ray on its way.
 struct alignas(64) Flight {
     // What the slab test needs, in the current space.
-    float o[3], inv_d[3];
+    SlabRay slab;
     uint64_t near_plane[3], far_plane[3];  ///< where in a node the planes are that come first and last, in bytes
     uint32_t octant_shift;
     float start, limit;  ///< boxes outside of it cannot hold what is sought
@@ -46,12 +46,6 @@ struct alignas(64) Flight {
     float t_in[kStackSize];
     uint32_t ref[kStackSize];
 
-    SlabRay slab() const {
-        SlabRay s;
-        for (int axis = 0; axis < 3; ++axis)
-            s.o[axis] = o[axis], s.inv_d[axis] = inv_d[axis], s.negative[axis] = std::signbit(inv_d[axis]);
-        return s;
-    }
     void push(uint32_t what) {
         t_in[depth] = -kInfinity;
         ref[depth++] = what;
@@ -62,15 +56,15 @@ struct alignas(64) Flight {
 inline void set_level(Flight& f, const LevelView& level, const Ray& ray) {
     f.level = level;
     f.ray = ray;
-    const SlabRay slab(ray);
+    // In place: a copy would have to wait for its parts.
+    new (&f.slab) SlabRay(ray);
     f.octant_shift = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        f.o[axis] = slab.o[axis], f.inv_d[axis] = slab.inv_d[axis];
-        f.near_plane[axis] = static_cast<uint32_t>(2 * axis + slab.negative[axis]) * kPlaneBytes;
+        f.near_plane[axis] = static_cast<uint32_t>(2 * axis + f.slab.negative[axis]) * kPlaneBytes;
         f.far_plane[axis] = f.near_plane[axis] ^ kPlaneBytes;
-        f.octant_shift += slab.negative[axis] ? 3u << axis : 0u;
+        f.octant_shift += f.slab.negative[axis] ? 3u << axis : 0u;
     }
-    if (level.blocks != &kNoBlocks) f.triangle_ray = TriangleRay(ray);
+    if (level.blocks != &kNoBlocks) new (&f.triangle_ray) TriangleRay(ray);
 }
 
 /// Inside a transformed instance t is clamped once more, and an end of the range that this can reach does not bound the
@@ -128,7 +122,7 @@ inline void test_children(const Flight& f, const Node& node, Float8& in, Float8&
     in = Float8::all(f.start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         const Planes planes(node, axis);
-        const Float8 o = Float8::all(f.o[axis]), inv_d = Float8::all(f.inv_d[axis]);
+        const Float8 o = Float8::all(f.slab.o[axis]), inv_d = Float8::all(f.slab.inv_d[axis]);
         in = larger((planes.at(f.near_plane[axis]) - o) * inv_d, in);
         out = smaller((planes.at(f.far_plane[axis]) - o) * inv_d, out);
     }
@@ -207,7 +201,7 @@ template <Mode kMode>
     if (id == kNoHit || !intersect_triangle(f.triangle_ray, p0, p1, p2, c)) return false;
     Hit hit{c.t, c.u, c.v};
     identify(f, world, id, hit);
-    return offer<kMode>(f, world, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab()));
+    return offer<kMode>(f, world, hit, slab_interval(triangle_bounds(p0, p1, p2), f.slab));
 }
 
 /// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
@@ -217,8 +211,8 @@ inline uint32_t settle_block(const Flight& f, const Block& block, Float4 t, uint
         Float4 p[3];
         block.corners(axis, p);
         const Float4 lo = smaller(smaller(p[0], p[1]), p[2]), hi = larger(larger(p[0], p[1]), p[2]);
-        const Float4 o = Float4::all(f.o[axis]), inv_d = Float4::all(f.inv_d[axis]);
-        const bool negative = f.near_plane[axis] > f.far_plane[axis];
+        const Float4 o = Float4::all(f.slab.o[axis]), inv_d = Float4::all(f.slab.inv_d[axis]);
+        const bool negative = f.slab.negative[axis];
         in = larger(((negative ? hi : lo) - o) * inv_d, in);
         out = smaller(((negative ? lo : hi) - o) * inv_d, out);
     }
@@ -289,13 +283,13 @@ template <Mode kMode>
     if (shapes.spheres) {
         const SphereCandidates c = intersect_sphere(f.ray, shapes.spheres[prim]);
         for (int i = 0; i < c.count; ++i)
-            if (offer<kMode>(f, world, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab()))) return true;
+            if (offer<kMode>(f, world, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab))) return true;
         return false;
     }
     PlanarCandidate c;
     const bool met = shapes.rectangles ? intersect_rectangle(f.ray, shapes.rectangles[prim], c)
                                        : intersect_disk(f.ray, shapes.disks[prim], c);
-    return met && offer<kMode>(f, world, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab()));
+    return met && offer<kMode>(f, world, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab));
 }
 
 /// A run of blocks. True when the query is done.
@@ -332,7 +326,7 @@ bool enter(Flight& f, const World& world, uint32_t instance) {
     Interval range;
     Ray ray = f.world_ray;
     if (!placed.identity) {
-        range = slab_interval(placed.world, f.slab());
+        range = slab_interval(placed.world, f.slab);
         if (range.empty() || !placed.to_object(f.world_ray, ray)) return false;
     }
     f.world = range;
@@ -377,10 +371,9 @@ template <Mode kMode>
     f.next = done ? kFinished : pop<kMode>(f);
 }
 
-/// `ray` must be canonical.
+/// f.world_ray must be there, and canonical.
 template <Mode kMode>
-inline void set_out(Flight& f, const World& world, const Ray& ray, uint32_t index) {
-    f.world_ray = ray;
+inline void set_out(Flight& f, const World& world, uint32_t index) {
     f.index = index;
     f.tmin = f.world_ray.tmin;
     // Ids that every candidate comes before: one at tmax itself is still a hit.
@@ -395,24 +388,26 @@ inline void set_out(Flight& f, const World& world, const Ray& ray, uint32_t inde
 /// False when the ray hits nothing by definition.
 template <Mode kMode>
 inline bool launch(Flight& f, const World& world, const Ray& in, const Hit* after, uint32_t index) {
-    Ray ray;
-    if (world.upper.nodes == nullptr || !canonical(in, ray)) return false;
+    if (world.upper.nodes == nullptr || !canonical(in, f.world_ray)) return false;
     if (kMode == Mode::after) {
         if (!after->found()) return false;
         f.after = *after;
     }
     if (kMode == Mode::opaque) f.after = {};
-    set_out<kMode>(f, world, ray, index);
+    set_out<kMode>(f, world, index);
     return true;
 }
 
 /// The answer of a ray at its end. Without a hit in Mode::opaque the instance of a cut-out is set, if there was one.
+/// Member by member: a Hit that was written in parts and is read as a whole makes the processor wait.
 template <Mode kMode>
-inline Hit answer(const Flight& f) {
-    if (f.best.found()) return f.best;
-    Hit none;
-    if (kMode == Mode::opaque) none.instance = f.after.instance;
-    return none;
+inline void answer(const Flight& f, Hit& hit) {
+    const bool found = f.best.found();
+    hit.t = found ? f.best.t : kInfinity;
+    hit.u = found ? f.best.u : 0;
+    hit.v = found ? f.best.v : 0;
+    hit.instance = found ? f.best.instance : kMode == Mode::opaque ? f.after.instance : kNoHit;
+    hit.prim = f.best.prim;
 }
 inline uint8_t occlusion(const Hit& hit) {
     return hit.found() ? Accel::blocked : hit.instance != kNoHit ? Accel::cut_out : Accel::clear;
@@ -481,7 +476,9 @@ inline void trace(const World& world, const Ray* rays, const Hit* after, size_t 
     };
     for (Flight& f : flights) start(f);
     queues.template run<kMode>(world, [&](Flight& f) {
-        sink(f.index, answer<kMode>(f));
+        Hit hit;
+        answer<kMode>(f, hit);
+        sink(f.index, hit);
         start(f);
     });
 }
@@ -499,9 +496,12 @@ inline void walk(Flight& f, const World& world) {
 }
 
 template <Mode kMode>
-inline Hit trace_one(const World& world, const Ray& ray, const Hit* after) {
+inline void trace_one(const World& world, const Ray& ray, const Hit* after, Hit& hit) {
     Flight f;
-    if (!launch<kMode>(f, world, ray, after, 0)) return {};
+    if (!launch<kMode>(f, world, ray, after, 0)) {
+        hit = {};
+        return;
+    }
     walk<kMode>(f, world);
-    return answer<kMode>(f);
+    answer<kMode>(f, hit);
 }

@@ -164,7 +164,8 @@ inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
     Flight& f = p.flights[i];
     if (p.started >> i & 1) return f;
     p.started |= 1u << i;
-    set_out<kMode>(f, world, *p.ray[i], p.index[i]);
+    f.world_ray = *p.ray[i];
+    set_out<kMode>(f, world, p.index[i]);
     return f;
 }
 
@@ -263,9 +264,7 @@ inline void trace_coherent(const World& world, const Ray* rays, size_t count, Fi
     PacketEntry stack[(kWidth - 1) * kMaxNodeLevels + kWidth];
     Packet packet;
     Queues<kInFlight> queues;
-    const auto land = [&](const Flight& f) {
-        finish(f.index, [&](Hit& hit) { hit = f.best.found() ? f.best : Hit{}; });
-    };
+    const auto land = [&](const Flight& f) { finish(f.index, [&](Hit& hit) { answer<kMode>(f, hit); }); };
     ScanOrder order(rays, count);
     uint32_t used = 0;
     for (size_t done = 0; done < count; done += kPacket) {
