@@ -17,6 +17,7 @@
 #include "command.h"
 #include "progress.h"
 #include "render/memory_estimate.h"
+#include "render/metadata.h"
 #include "settings_options.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
@@ -29,6 +30,7 @@ struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
     SettingsOptions settings;
+    std::string time_limit;
     std::string bvh = "sah", bvh_layout = "full", isa = "auto";
     Execution execution;
     PictureOptions picture;
@@ -73,6 +75,22 @@ std::string default_output(const std::string& scene) {
     return name + ".png";
 }
 
+/// In seconds: 90, 90s, 1.5m or 2h.
+Result<double> parse_time_limit(std::string_view text) {
+    const std::string_view units = "smh";
+    std::string_view number = text;
+    double unit = 1;
+    if (!text.empty() && units.find(text.back()) != std::string_view::npos) {
+        unit = text.back() == 's' ? 1 : text.back() == 'm' ? 60 : 3600;
+        number.remove_suffix(1);
+    }
+    const auto value = parse_double(number);
+    if (value && *value * unit >= kMinTimeLimit && *value * unit <= kMaxTimeLimit) return *value * unit;
+    return usage_error(fmt::format("--time-limit: '{}' is not a time", escape_for_display(text)),
+                       fmt::format("a number with s, m or h, such as 60s or 1.5h; {} s at least, {} s at most",
+                                   kMinTimeLimit, kMaxTimeLimit));
+}
+
 // --- Running ---------------------------------------------------------------------------------------------------
 
 /// JSON has no numbers that are not finite: those of a bad sample appear as text.
@@ -96,8 +114,9 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     write_field(w, "scene", o.scene);
     write_field(w, "hash", image_hash(r.image));
     number("width", r.image.width), number("height", r.image.height);
-    number("spp", s.samples_per_pixel);
+    number("spp", r.out_of_time ? r.min_samples : s.samples_per_pixel);
     w.Key("complete"), w.Bool(r.complete);
+    w.Key("out_of_time"), w.Bool(r.out_of_time);
     number("min_samples", r.min_samples), number("max_samples", r.max_samples);
     number("samples", r.statistics.samples);
     number("camera_rays", r.statistics.camera_rays);
@@ -131,9 +150,8 @@ void print_summary(const RenderSettings& s, const RenderResult& r, const std::ve
     std::string outputs;
     for (const std::string& path : written) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
     std::cerr << fmt::format(
-        "{}x{}, {} samples per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
-        r.complete ? fmt::format("{}", s.samples_per_pixel)
-                   : fmt::format("{} to {} of {}", r.min_samples, r.max_samples, s.samples_per_pixel),
+        "{}x{}, {} per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
+        r.complete ? fmt::format("{} samples", r.min_samples) : partial_samples(s, r.min_samples, r.max_samples),
         format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
         r.statistics.threads == 1 ? "" : "s", outputs.empty() ? "" : " -> ", outputs);
 }
@@ -223,6 +241,11 @@ int run_render(const RenderOptions& given) {
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
     o.execution.bvh_layout = *find_name<BvhLayout>(o.bvh_layout);
     o.execution.isa = *find_name<Isa>(o.isa);
+    if (!o.time_limit.empty()) {
+        const auto limit = parse_time_limit(o.time_limit);
+        if (!limit) return report(limit.error());
+        o.execution.time_limit = *limit;
+    }
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     const auto said = parse_overrides(o.settings, o.execution);
     if (!said) return report(said.error());
@@ -232,8 +255,10 @@ int run_render(const RenderOptions& given) {
     auto loaded = load_scene(o.scene);
     if (!loaded) return report(loaded.error());
     if (auto status = check_not_inputs(o.outputs, loaded->files); !status) return report(status.error());
-    const auto settings = settings_for(o.settings, *said, *loaded);
+    auto settings = settings_for(o.settings, *said, *loaded);
     if (!settings) return report(settings.error());
+    // The scene's own number of samples is for those who do not say when to stop.
+    if (o.execution.time_limit > 0 && !o.settings.spp) settings->samples_per_pixel = kMaxSamplesPerPixel;
     Diagnostics diagnostics = std::move(loaded->diagnostics);
     if (auto status = check_scene_memory(estimate_memory(loaded->scene, *settings, o.execution)); !status)
         return report(status.error());
@@ -268,6 +293,13 @@ void add_render(CLI::App& app, Action& action) {
     add_settings_options(c, o->settings);
     add_count<uint32_t>(c, "--threads", o->execution.threads, 0, kMaxThreads,
                         "0: all the machine has; never changes the picture")
+        ->group("Execution");
+    c->add_option(
+         "--time-limit", o->time_limit,
+         "Render for so long (60s, 5m, 1.5h; preparing the scene not counted) instead of up to the scene's\n"
+         "number of samples. All pixels get the same number, at least 1 and at most --spp where that is given;\n"
+         "the file says how many, and --spp with that number makes the same picture")
+        ->type_name("TIME")
         ->group("Execution");
     add_count<uint32_t>(c, "--tile-size", o->execution.tile_size, 1, 256, "Pixels, 1 to 256; never changes the picture")
         ->default_str(std::to_string(o->execution.tile_size))

@@ -47,10 +47,10 @@ struct MemoryEstimate {
 MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& settings, const Execution& execution = {});
 
 struct RenderProgress {
-    uint64_t samples_done = 0;  ///< camera samples finished, over all pixels
-    uint64_t samples_total = 0;
-    uint64_t rays = 0;   ///< traced so far, shadow rays included
-    double seconds = 0;  ///< since the job started
+    uint64_t samples_done = 0;   ///< camera samples finished, over all pixels
+    uint64_t samples_total = 0;  ///< by the end; with a time limit an estimate
+    uint64_t rays = 0;           ///< traced so far, shadow rays included
+    double seconds = 0;          ///< since the job started
 };
 
 /// A camera sample and its radiance, before the filter's weight.
@@ -80,6 +80,7 @@ struct RenderResult {
     Image image;           ///< R, G, B of the crop window (or the whole picture), with metadata
     bool complete = true;  ///< false after a cancel: `image` holds what was done, each pixel over its own sample count
     uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
+    bool out_of_time = false;  ///< Execution::time_limit ended it; it is complete, with fewer samples than were allowed
     RenderStatistics statistics;
 };
 

@@ -71,6 +71,7 @@ enum class BvhLayout : uint8_t { full, compact };
 /// unless the environment variable STERADIAN_ISA names another one.
 enum class Isa : uint8_t { automatic, scalar, sse4, avx2, avx512, neon };
 
+inline constexpr double kMinTimeLimit = 0.001, kMaxTimeLimit = 1e9;  ///< seconds
 inline constexpr uint32_t kMaxFireflies = 10000;
 
 /// What may differ from run to run without changing the picture.
@@ -81,6 +82,10 @@ struct Execution {
     uint32_t bvh_max_depth = 64;
     Isa isa = Isa::automatic;
     BvhLayout bvh_layout = BvhLayout::full;
+    /// Seconds after which the render ends by itself, in whole passes over the picture and after one at least; 0: none.
+    /// It decides how many samples a pixel gets and nothing else: samples_per_pixel, when that is not reached before,
+    /// becomes that number.
+    double time_limit = 0;
     uint32_t fireflies = 0;  ///< how many of the brightest samples the statistics list, 0 … kMaxFireflies
 };
 

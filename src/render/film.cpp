@@ -38,6 +38,24 @@ void Film::commit(size_t tile_index, uint64_t block, uint32_t samples, std::vect
     }
 }
 
+std::vector<RgbSum> Film::open_sums(size_t tile_index) const {
+    const Tile& tile = tiles_[tile_index];
+    const std::lock_guard lock(tile.mutex);
+    return tile.open.samples > 0 ? tile.open.sums : std::vector<RgbSum>(tile.rect.pixels());
+}
+
+void Film::extend(size_t tile_index, uint32_t samples, std::vector<RgbSum> sums) {
+    Tile& tile = tiles_[tile_index];
+    const std::lock_guard lock(tile.mutex);
+    tile.open.sums = std::move(sums);
+    tile.open.samples += samples;
+    tile.samples += samples;
+    if (tile.open.samples < kBlockSamples) return;
+    for (size_t i = 0; i < tile.sums.size(); ++i) tile.sums[i] += tile.open.sums[i];
+    tile.open = {};
+    ++tile.next_block;
+}
+
 Image Film::develop() const {
     Image image;
     image.width = window_.x1 - window_.x0;
@@ -52,9 +70,11 @@ Image Film::develop() const {
             const size_t x = tile.rect.x0 - window_.x0 + i % tile.rect.width();
             const size_t y = tile.rect.y0 - window_.y0 + i / tile.rect.width();
             float* pixel = &image.pixels[(y * image.width + x) * 3];
-            pixel[0] = static_cast<float>(tile.sums[i].r / count);
-            pixel[1] = static_cast<float>(tile.sums[i].g / count);
-            pixel[2] = static_cast<float>(tile.sums[i].b / count);
+            RgbSum sum = tile.sums[i];
+            if (tile.open.samples > 0) sum += tile.open.sums[i];
+            pixel[0] = static_cast<float>(sum.r / count);
+            pixel[1] = static_cast<float>(sum.g / count);
+            pixel[2] = static_cast<float>(sum.b / count);
         }
     }
     return image;

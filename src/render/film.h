@@ -48,6 +48,11 @@ public:
     /// Hands over the sums of one block of one tile, a sum per pixel row by row; from any thread, each block once.
     void commit(size_t tile, uint64_t block, uint32_t samples, std::vector<RgbSum> sums);
 
+    /// For blocks in parts, one after the other: the sums of the open block of a tile, and what they have become after
+    /// `samples` more samples a pixel. A block that is full is folded.
+    std::vector<RgbSum> open_sums(size_t tile) const;
+    void extend(size_t tile, uint32_t samples, std::vector<RgbSum> sums);
+
     /// R, G, B means over the samples that were folded; 0 where there are none. Safe while others commit.
     Image develop() const;
     struct Range {
@@ -67,6 +72,7 @@ private:
         uint64_t samples = 0;
         std::vector<RgbSum> sums;
         std::map<uint64_t, Block> held_back;
+        Block open;  ///< begun, of extend()
     };
     Crop window_;
     std::vector<Tile> tiles_;

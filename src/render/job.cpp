@@ -1,5 +1,6 @@
 // The one driver: checks the settings, hands (tile × block) units to the workers block by block over the whole frame,
-// and folds what they bring into the film.
+// and folds what they bring into the film. With a time limit there are many passes, each of some samples for all
+// pixels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <new>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -16,6 +18,7 @@
 #include "render/integrator.h"
 #include "render/memory_estimate.h"
 #include "render/metadata.h"
+#include "render/passes.h"
 #include "scene/validate.h"
 
 namespace steradian {
@@ -32,6 +35,9 @@ Status check(const RenderSettings& s, const Execution& e) {
     if (e.threads > 1024) return settings_error(fmt::format("{} threads: expected at most 1024", e.threads));
     if (e.fireflies > kMaxFireflies)
         return settings_error(fmt::format("{} fireflies: expected at most {}", e.fireflies, kMaxFireflies));
+    if (!(e.time_limit == 0 || (e.time_limit >= kMinTimeLimit && e.time_limit <= kMaxTimeLimit)))
+        return settings_error(fmt::format("a time limit of {} seconds: expected {} to {}, or 0 for none", e.time_limit,
+                                          kMinTimeLimit, kMaxTimeLimit));
     return check_picture_memory(s, e);
 }
 
@@ -57,7 +63,7 @@ public:
     /// Own threads and not TBB's: the number of workers is then exactly what was asked for, in any host program.
     void launch() {
         const uint32_t wanted = workers_of(execution_);
-        const uint64_t units = units_total();
+        const uint64_t units = passes_.begin_first();
         const auto count = static_cast<uint32_t>(std::min<uint64_t>(wanted, std::max<uint64_t>(units, 1)));
         // Integrators take their memory here, where running out of it can still be reported by start().
         std::vector<std::unique_ptr<Integrator>> integrators;
@@ -88,7 +94,7 @@ public:
     RenderProgress progress() const override {
         RenderProgress p;
         p.samples_done = samples_done_.load();
-        p.samples_total = pixels() * settings_.samples_per_pixel;
+        p.samples_total = samples_expected();
         p.rays = rays_.load();
         p.seconds = finished() ? seconds_.load() : std::chrono::duration<double>(Clock::now() - begin_).count();
         return p;
@@ -116,19 +122,23 @@ public:
         result.image = std::move(*image);
         result.min_samples = samples.min;
         result.max_samples = samples.max;
-        result.complete = samples.min == settings_.samples_per_pixel;
+        result.complete = passes_.ended() || samples.min == settings_.samples_per_pixel;
+        result.out_of_time = out_of_time_;
         result.statistics = statistics();
         return result;
     }
 
 private:
     uint64_t pixels() const { return uint64_t(window_.x1 - window_.x0) * (window_.y1 - window_.y0); }
-    uint64_t units_total() const { return blocks_ * film_.tiles(); }
 
     Image picture() const {
+        // What ran out of time is the whole picture of so many samples.
+        const bool whole = passes_.ended() && out_of_time_;
         Image image = film_.develop();
         const Film::Range samples = film_.samples_per_pixel();
-        image.metadata = picture_metadata(settings_, scene_->hash, samples.min, samples.max);
+        RenderSettings made_of = settings_;
+        if (whole) made_of.samples_per_pixel = samples.min;
+        image.metadata = picture_metadata(made_of, scene_->hash, samples.min, samples.max);
         return image;
     }
 
@@ -152,10 +162,12 @@ private:
         bool took_part = false;
         try {
             counters = Counters(execution_.fireflies);
-            for (uint64_t unit; !cancelled_ && (unit = next_unit_.fetch_add(1)) < units_total();) {
-                if (!render_unit(integrator, unit, counters)) break;
-                took_part = true;
-            }
+            passes_.run([&](uint64_t unit) {
+                const bool done =
+                    timed() ? render_part(integrator, unit, counters) : render_unit(integrator, unit, counters);
+                took_part |= done;
+                return done;
+            });
         } catch (const std::bad_alloc&) {
             fail(make_error(ErrorCode::resources, "not enough memory to render"));
         } catch (const std::exception& e) {
@@ -167,6 +179,56 @@ private:
             took_part_ += took_part;
         }
         retire(1);
+    }
+
+    bool timed() const { return execution_.time_limit > 0; }
+
+    /// How many units the next pass has.
+    uint64_t begin_pass() {
+        if (timed()) return begin_timed_pass();
+        return std::exchange(first_sample_, settings_.samples_per_pixel) == 0 ? blocks_ * film_.tiles() : 0;
+    }
+
+    /// More samples for all pixels, in the same block of the film: at most as many as there are, for the speed is not
+    /// known well in the beginning, and no more than there is time for. The first is made in any case.
+    uint64_t begin_timed_pass() {
+        first_sample_ += samples_;
+        const uint64_t left = settings_.samples_per_pixel - first_sample_;
+        if (left == 0) return 0;
+        const double possible = first_sample_ == 0 ? 1 : samples_in_time() / double(pixels());
+        if (!(possible >= 1)) {
+            out_of_time_ = true;
+            return 0;
+        }
+        const uint64_t most =
+            std::min({left, std::max<uint64_t>(first_sample_, 1), kBlockSamples - first_sample_ % kBlockSamples});
+        samples_ = static_cast<uint32_t>(min_of(possible, double(most)));
+        return film_.tiles();
+    }
+
+    double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+    /// How many more camera samples there is time for, at the speed so far.
+    double samples_in_time() const {
+        return double(samples_done_.load()) / max_of(elapsed(), 1e-9) * (execution_.time_limit - elapsed());
+    }
+
+    /// By the end, as far as can be told.
+    uint64_t samples_expected() const {
+        const uint64_t done = samples_done_.load(), most = pixels() * settings_.samples_per_pixel;
+        if (passes_.ended()) return done;
+        if (!timed() || done == 0) return most;
+        return done + static_cast<uint64_t>(min_of(max_of(samples_in_time(), 0.0), double(most - done)));
+    }
+
+    /// A tile's share of a pass with a time limit: goes on where the last one stopped.
+    bool render_part(Integrator& integrator, uint64_t tile, Counters& counters) {
+        const WorkUnit work{film_.rect(tile), first_sample_, samples_};
+        std::vector<RgbSum> sums = film_.open_sums(tile);
+        if (!integrator.render(work, sums, counters)) return false;
+        film_.extend(tile, work.samples, std::move(sums));
+        samples_done_ += uint64_t(work.samples) * work.tile.pixels();
+        return true;
     }
 
     /// Units are numbered block by block over the whole frame, so that there is a whole picture early.
@@ -211,7 +273,11 @@ private:
     const uint64_t blocks_;
     const Clock::time_point begin_ = Clock::now();
 
-    std::atomic<uint64_t> next_unit_{0}, samples_done_{0};
+    std::atomic<uint64_t> samples_done_{0};
+    std::atomic<bool> out_of_time_{false};
+    uint64_t first_sample_ = 0;  ///< of the pass under way
+    uint32_t samples_ = 0;       ///< of each pixel in it, where there is a time limit
+    Passes passes_{[this] { return begin_pass(); }, cancelled_};
     std::atomic<double> seconds_{0};
     std::atomic<bool> finished_{false};
 

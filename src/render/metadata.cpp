@@ -7,6 +7,13 @@
 
 namespace steradian {
 
+std::string partial_samples(const RenderSettings& s, uint64_t min_samples, uint64_t max_samples) {
+    std::string out = fmt::format("{} to {}", min_samples, max_samples);
+    // The largest number stands for "as many as there is time for".
+    if (s.samples_per_pixel < kMaxSamplesPerPixel) out += fmt::format(" of {}", s.samples_per_pixel);
+    return out + " samples";
+}
+
 std::map<std::string, std::string> picture_metadata(const RenderSettings& s, const std::string& scene_hash,
                                                     uint64_t min_samples, uint64_t max_samples) {
     std::map<std::string, std::string> m;
@@ -29,8 +36,7 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     m["steradian:seed"] = fmt::format("{}", s.seed);
     m["steradian:filter"] = fmt::format("{} {}", name_of(s.filter.kind), s.filter.radius);
     m["steradian:samples"] = fmt::format("{}", min_samples);
-    if (min_samples != s.samples_per_pixel)
-        m["steradian:partial"] = fmt::format("{} to {} of {} samples", min_samples, max_samples, s.samples_per_pixel);
+    if (min_samples != s.samples_per_pixel) m["steradian:partial"] = partial_samples(s, min_samples, max_samples);
     return m;
 }
 

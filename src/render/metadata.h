@@ -8,6 +8,8 @@
 
 namespace steradian {
 
+/// How many samples the pixels of a picture have that was stopped: "8 to 72 of 128 samples".
+std::string partial_samples(const RenderSettings& settings, uint64_t min_samples, uint64_t max_samples);
 std::map<std::string, std::string> picture_metadata(const RenderSettings& settings, const std::string& scene_hash,
                                                     uint64_t min_samples, uint64_t max_samples);
 

@@ -37,6 +37,36 @@ TEST_F(RenderCommand, WithoutOutputItWritesAPngNamedLikeTheScene) {
     expect_files({"scene.png"});
 }
 
+TEST_F(RenderCommand, ATimeLimitGivesTheFileOfItsNumberOfSamples) {
+    // The scene asks for a few samples only; time is what counts where it is given.
+    const Outcome timed = steradian({"render", "scene.json", "--time-limit", "0.3s", "-o", "a.exr", "--json"});
+    ASSERT_EQ(timed.code, 0) << timed.err;
+    EXPECT_EQ(field(timed.out, "out_of_time"), "true");
+    EXPECT_EQ(field(timed.out, "complete"), "true");
+    const std::string samples = field(timed.out, "spp");
+    EXPECT_EQ(field(timed.out, "min_samples"), samples);
+    EXPECT_EQ(field(timed.out, "max_samples"), samples);
+    EXPECT_NE(timed.err.find(" " + samples + " samples per pixel in"), std::string::npos) << timed.err;
+    ASSERT_EQ(steradian({"render", "scene.json", "--spp", samples, "-o", "b.exr", "-q"}).code, 0);
+    EXPECT_TRUE(slurp(folder_.file("a.exr")) == slurp(folder_.file("b.exr")));
+    const Outcome most = steradian({"render", "scene.json", "--time-limit", "1h", "--spp", "3", "--json"});
+    EXPECT_EQ(field(most.out, "out_of_time"), "false");
+    EXPECT_EQ(field(most.out, "max_samples"), "3");
+    expect_files({"a.exr", "b.exr"});
+}
+
+TEST_F(RenderCommand, ATimeLimitIsATime) {
+    for (const char* bad : {"x", "5d", "-1s", "0", "0s", "1e99s", "s", "nan", "1 s", "1s2"}) {
+        const Outcome o = steradian({"render", "scene.json", std::string("--time-limit=") + bad, "-o", "c.png"});
+        EXPECT_EQ(o.code, 2) << bad;
+        EXPECT_NE(o.err.find("--time-limit"), std::string::npos) << o.err;
+    }
+    for (const char* good : {"1", "1s", "0.02m", "0.001h"})
+        EXPECT_EQ(steradian({"render", "scene.json", "--spp", "1", "--time-limit", good, "-o", "c.pfm"}).code, 0)
+            << good;
+    expect_files({"c.pfm"});
+}
+
 TEST_F(RenderCommand, OptionsMayComeBeforeTheScene) {
     EXPECT_EQ(steradian({"render", "-q", "-o", "a.png", "-o", "b.png", "scene.json"}).code, 0);
     expect_files({"a.png", "b.png"});

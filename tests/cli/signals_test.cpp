@@ -38,6 +38,19 @@ INSTANTIATE_TEST_SUITE_P(Each, RenderSignal,
 
 class Signals : public CommandTest {};
 
+TEST_F(Signals, ARenderWithATimeLimitStopsWithWhatIsDone) {
+    Process process(folder_, {"render", "scene.json", "--time-limit", "10h", "-o", "a.exr", "--json"});
+    ASSERT_TRUE(process.shows_progress());
+    process.send(SIGINT);
+    const Outcome o = process.wait();
+    EXPECT_EQ(o.code, 130) << o.err;
+    EXPECT_EQ(field(o.out, "complete"), "false");
+    EXPECT_EQ(field(o.out, "out_of_time"), "false");
+    const auto image = read_image(folder_.file("a.exr"));
+    ASSERT_TRUE(image.ok()) << image.error().str();
+    EXPECT_TRUE(image->metadata.count("steradian:partial"));
+}
+
 TEST_F(Signals, AStoppedAndContinuedRenderMakesTheSamePicture) {
     const std::vector<std::string> arguments{"render", "scene.json", "--size", "128x96",
                                              "--spp",  "256",        "-q",     "--json"};

@@ -63,6 +63,27 @@ TEST(Film, ABlockThatIsFinishedEarlyIsHeldBack) {
     EXPECT_EQ(film.develop().pixels[1], 11.0f);
 }
 
+TEST(Film, ABlockInPartsIsTheBlock) {
+    // Values whose sum depends on the order of addition: 1e16 + 1 loses the 1.
+    const double parts[] = {1, 1e16, 3, -1e16, 5};
+    Film whole({0, 0, 2, 1}, 16), in_parts({0, 0, 2, 1}, 16);
+    for (uint64_t block = 0; block < 3; ++block) {
+        RgbSum sum;
+        uint32_t done = 0;
+        for (size_t i = 0; i < 5; ++i) {
+            const uint32_t samples = i == 4 ? (block == 2 ? 1 : kBlockSamples - done) : 9;
+            sum += RgbSum{parts[i], 2 * parts[i], 3 * parts[i]};
+            std::vector<RgbSum> sums = in_parts.open_sums(0);
+            for (RgbSum& s : sums) s += RgbSum{parts[i], 2 * parts[i], 3 * parts[i]};
+            in_parts.extend(0, samples, std::move(sums));
+            done += samples;
+        }
+        whole.commit(0, block, done, std::vector<RgbSum>(2, sum));
+        EXPECT_EQ(in_parts.samples_per_pixel().max, whole.samples_per_pixel().max);
+        EXPECT_EQ(in_parts.develop().pixels, whole.develop().pixels);
+    }
+}
+
 TEST(Film, SnapshotsAreSafeWhileOthersCommit) {
     Film film({0, 0, 64, 64}, 16);
     std::thread writer([&] {
