@@ -56,13 +56,6 @@ struct LightImportance {
 /// its cosine. Nothing is given up that is nearer to the limits.
 inline constexpr float kCosineSlack = 2e-3f;
 
-/// cos of max(a - b, 0).
-inline float cos_of_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
-    return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
-}
-inline float sin_of_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
-    return cos_a > cos_b ? 0 : sin_a * cos_b - cos_a * sin_b;
-}
 inline float sine_of(float cosine) { return std::sqrt(max_of(1 - cosine * cosine, 0.0f)); }
 
 /// Never nothing where a light can contribute.
@@ -73,24 +66,25 @@ inline LightImportance light_importance(const LightNode& node, const LightReceiv
     // Inside the sphere anything may come from anywhere; so it may where numbers end.
     if (!(d2 > node.radius2) || !(d2 < 1e37f) || !(d2 > 1e-30f))
         return {max_of(double(node.strength), kLeast), max_of(double(node.radius2), 1e-30)};
-    const float per_distance = 1 / std::sqrt(d2);
-    const float sin_u = min_of(std::sqrt(node.radius2) * per_distance, 1.0f), cos_u = sine_of(sin_u);
+    const float per_d2 = 1 / d2, per_distance = std::sqrt(per_d2);
+    const float sin2_u = min_of(node.radius2 * per_d2, 1.0f), sin_u = std::sqrt(sin2_u), cos_u = std::sqrt(1 - sin2_u);
 
-    // θ' = max(θ - θ_o - θ_u, 0): between the light's direction and the nearest normal that there may be.
-    float cos_t = dot(node.axis, d) * per_distance;
+    // cos of θ' = max(θ - θ_o - θ_u, 0): between the light's direction and the nearest normal that there may be.
+    float cos_t = dot(node.axis, d) * per_distance, cos_emitted = 1;
     if (node.two_sided) cos_t = std::fabs(cos_t);
-    const float sin_t = sine_of(cos_t);
-    const float cos_x = cos_of_difference(cos_t, sin_t, node.cos_o, node.sin_o);
-    const float sin_x = sin_of_difference(cos_t, sin_t, node.cos_o, node.sin_o);
-    const float cos_emitted = cos_of_difference(cos_x, sin_x, cos_u, sin_u);
-    if (cos_emitted < node.cos_e - kCosineSlack) return {};
+    if (cos_t < node.cos_o) {
+        const float sin_t = sine_of(cos_t);
+        const float cos_x = cos_t * node.cos_o + sin_t * node.sin_o, sin_x = sin_t * node.cos_o - cos_t * node.sin_o;
+        if (cos_x < cos_u) cos_emitted = cos_x * cos_u + sin_x * sin_u;
+        if (cos_emitted < node.cos_e - kCosineSlack) return {};
+    }
 
-    // θ_i' = max(θ_i - θ_u, 0) at the receiver.
+    // cos of θ_i' = max(θ_i - θ_u, 0) at the receiver.
     float cos_received = 1;
     if (at.n != Vec3{}) {
         float cos_i = -dot(at.n, d) * per_distance;
         if (at.both_sides) cos_i = std::fabs(cos_i);
-        cos_received = cos_of_difference(cos_i, sine_of(cos_i), cos_u, sin_u);
+        if (cos_i < cos_u) cos_received = cos_i * cos_u + sine_of(cos_i) * sin_u;
         if (cos_received < -kCosineSlack) return {};
     }
     const double cosines = double(max_of(cos_emitted, kCosineSlack)) * max_of(cos_received, kCosineSlack);

@@ -25,6 +25,7 @@ DirectionCone unite(const DirectionCone& p, const DirectionCone& q) {
     DirectionCone out = a;
     out.theta_e = max_of(a.theta_e, b.theta_e);
     out.two_sided = a.two_sided || b.two_sided;
+    if (a.theta_o >= kPiD) return out;
     const double between = clamped_acos(dot(a.axis, b.axis));
     if (min_of(between + b.theta_o, kPiD) <= a.theta_o) return out;
     out.theta_o = (a.theta_o + between + b.theta_o) / 2;

@@ -206,6 +206,32 @@ TEST(LightTree, OfAMeshWithDegenerateTriangles) {
     EXPECT_GT(seen, 1000);
 }
 
+/// The cone around two cones holds the rim of each.
+TEST(LightTree, BoundsOfTwoHoldBoth) {
+    test::Random random(8);
+    int narrower = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const LightBounds a = random_light(random), b = random_light(random), both = unite(a, b);
+        EXPECT_EQ(both.strength, a.strength + b.strength);
+        EXPECT_EQ(both.cone.theta_e, max_of(a.cone.theta_e, b.cone.theta_e));
+        narrower += both.cone.theta_o < 3;
+        for (const LightBounds& one : {a, b}) {
+            const Frame3d frame = Frame3d::from_z(one.cone.axis);
+            for (int k = 0; k < 16; ++k) {
+                const double phi = 2 * std::numbers::pi * k / 16, s = std::sin(one.cone.theta_o);
+                const Vec3d rim = frame.to_world({s * std::cos(phi), s * std::sin(phi), std::cos(one.cone.theta_o)});
+                const double angle = std::acos(clamp_to(dot(rim, both.cone.axis), -1.0, 1.0));
+                EXPECT_LE(angle, both.cone.theta_o + 1e-6) << round;
+            }
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_LE(both.lo[axis], one.lo[axis]);
+                EXPECT_GE(both.hi[axis], one.hi[axis]);
+            }
+        }
+    }
+    EXPECT_GT(narrower, 500);
+}
+
 TEST(LightTree, IsTheSameTreeForTheSameLightsAndLeavesOutTheDark) {
     test::Random random(6);
     std::vector<LightBounds> lights = random_lights(random, 500);
