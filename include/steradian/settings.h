@@ -9,7 +9,7 @@
 namespace steradian {
 
 /// All light; light without detours; ambient occlusion; and what camera rays find, to look for faults in a scene.
-enum class IntegratorKind : uint8_t { path, direct, ao, normals, albedo, uv, depth, primitive };
+enum class IntegratorKind : uint8_t { path, direct, ao, normals, albedo, uv, depth, primitive, cost };
 /// How `path` finds lights with an extent: by directions that they are asked for and directions that surfaces prefer,
 /// put together by multiple importance sampling, or by one of the two alone (for comparisons; the mean is the same).
 enum class LightSampling : uint8_t { mis, light, bsdf };

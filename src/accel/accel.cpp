@@ -387,6 +387,11 @@ Accel::Occlusion Accel::occluded(const Ray& ray) const noexcept {
     return static_cast<Occlusion>(result);
 }
 
+RayVisits Accel::visits(const Ray& ray) const noexcept {
+    const FloatMode mode;
+    return data_->kernels->visits(data_->world, ray);
+}
+
 Accel::Bounds Accel::bounds() const noexcept { return {data_->built.upper.bounds.lo, data_->built.upper.bounds.hi}; }
 
 const AccelStatistics& Accel::statistics() const noexcept { return data_->statistics; }

@@ -122,6 +122,8 @@ public:
 
     Hit intersect(const Ray& ray) const noexcept;
     Occlusion occluded(const Ray& ray) const noexcept;
+    /// The same for every instruction set; depends on the builder and the layout.
+    RayVisits visits(const Ray& ray) const noexcept;
 
     /// World bounds of everything; lo > hi when there is nothing.
     struct Bounds {

@@ -16,8 +16,8 @@ template <class Kind>
 constexpr std::span<const std::string_view> names_of() noexcept;
 
 namespace detail {
-inline constexpr std::array<std::string_view, 8> kIntegratorNames{"path",   "direct", "ao",    "normals",
-                                                                  "albedo", "uv",     "depth", "primitive"};
+inline constexpr std::array<std::string_view, 9> kIntegratorNames{"path", "direct", "ao",        "normals", "albedo",
+                                                                  "uv",   "depth",  "primitive", "cost"};
 inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "light", "bsdf"};
 inline constexpr std::array<std::string_view, 3> kLightChoiceNames{"bvh", "power", "uniform"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};

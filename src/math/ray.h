@@ -36,4 +36,11 @@ struct Hit {
     bool operator==(const Hit&) const = default;
 };
 
+/// What it takes to find the closest hit of one ray.
+struct RayVisits {
+    uint32_t nodes = 0;  ///< of eight children each
+    uint32_t items = 0;  ///< blocks of four triangles, other shapes, and instances that are entered
+    bool operator==(const RayVisits&) const = default;
+};
+
 }  // namespace steradian

@@ -1,5 +1,6 @@
 // What camera rays find, as pictures: to see whether a scene is what it is meant to be. Rays that find nothing are
 // black.
+#include "math/elementary.h"
 #include "render/wavefront.h"
 
 namespace steradian {
@@ -51,6 +52,34 @@ Rgb primitive_color(const Found& f) {
     return {channel(0), channel(8), channel(16)};
 }
 
+/// Visits of nodes and tests of what leaves hold, on a scale that grows fourfold from colour to colour.
+Rgb heat_of(RayVisits visits) {
+    static constexpr Rgb kScale[] = {{0, 0, 0},             // 1
+                                     {0.02f, 0.02f, 0.4f},  // 4
+                                     {0, 0.4f, 0.3f},       // 16
+                                     {0.9f, 0.6f, 0},       // 64
+                                     {0.9f, 0.03f, 0},      // 256
+                                     {1, 1, 1}};            // 1024 and more
+    constexpr double kLast = std::size(kScale) - 1;
+    const double count = double(visits.nodes) + visits.items;
+    const double place = min_of(max_of(math::log2(count) / 2, 0.0), kLast);
+    const auto below = static_cast<size_t>(min_of(place, kLast - 1));
+    const auto part = static_cast<float>(place - static_cast<double>(below));
+    return kScale[below] * (1 - part) + kScale[below + 1] * part;
+}
+
+/// What the hierarchy costs a camera ray, hit or not.
+class CostInspector final : public WavefrontIntegrator {
+public:
+    using WavefrontIntegrator::WavefrontIntegrator;
+
+private:
+    void bounce(uint32_t) noexcept override {
+        each_hit(
+            [&](uint32_t id, const Ray& ray, const Hit&) { path(id).radiance = heat_of(c_.scene.accel.visits(ray)); });
+    }
+};
+
 template <Rgb (*Color)(const Found&)>
 class Inspector final : public WavefrontIntegrator {
 public:
@@ -83,6 +112,8 @@ std::unique_ptr<Integrator> make_inspector(const RenderContext& context, uint32_
             return make<uv_color>(context, max_tile_pixels);
         case IntegratorKind::depth:
             return make<depth_color>(context, max_tile_pixels);
+        case IntegratorKind::cost:
+            return std::make_unique<CostInspector>(context, max_tile_pixels);
         default:
             return make<primitive_color>(context, max_tile_pixels);
     }

@@ -27,6 +27,7 @@ constexpr Row kIntegrators[] = {
     {IntegratorKind::uv, make_inspector},
     {IntegratorKind::depth, make_inspector},
     {IntegratorKind::primitive, make_inspector},
+    {IntegratorKind::cost, make_inspector},
 };
 
 constexpr bool in_order() {

@@ -137,6 +137,39 @@ TEST(Api, HostileRaysAmongManyGetTheDefinedAnswer) {
     }
 }
 
+/// Of a row of triangles of which a ray along it meets all boxes, and of one that misses everything.
+TEST(Api, VisitsAreCounted) {
+    constexpr int kTriangles = 512;
+    TriangleMesh mesh;
+    for (int i = 0; i < kTriangles; ++i) {
+        const auto z = static_cast<float>(i);
+        mesh.add({-1, -1, z}, {1, -1, z}, {0, 1, z});
+    }
+    const Geometry geometry = mesh.geometry();
+    const GeometryInstance instance{};
+    // Past every triangle, but not past its box; the nearest first, of which no more than the first leaf is needed; and
+    // past everything.
+    const Ray rays[] = {{{0.9f, 0.9f, -1}, 0, {0, 0, 1}, kInfinity},
+                        {{0, 0, -1}, 0, {0, 0, 1}, kInfinity},
+                        {{5, 0, -1}, 0, {0, 0, 1}, kInfinity}};
+    for (const Isa isa : supported_isas())
+        for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+            AccelOptions options;
+            options.isa = isa;
+            options.layout = layout;
+            const Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
+            ASSERT_TRUE(accel);
+            const AccelStatistics& s = accel->statistics();
+            const RayVisits all = accel->visits(rays[0]), first = accel->visits(rays[1]);
+            EXPECT_EQ(all.nodes, s.nodes);
+            EXPECT_GE(all.items, uint32_t(kTriangles / 4));
+            EXPECT_GE(all.items, s.leaves);
+            EXPECT_LT(first.nodes, all.nodes);
+            EXPECT_LE(first.items, 2u);
+            EXPECT_EQ(accel->visits(rays[2]), (RayVisits{1, 0}));
+        }
+}
+
 // Embree's bound is 2.5 times a normal ray; these return before they look at anything.
 TEST(Api, NextHitAfterAMissIsAMiss) {
     TestScene scene("sphere");

@@ -150,6 +150,22 @@ TEST(Inspectors, ShowWhatTheCameraFinds) {
     for (const Image* image : {&normals, &albedo, &depth, &uv, &primitive}) EXPECT_EQ(pixel(*image, 0, 0)[0], 0);
 }
 
+TEST(Inspectors, CostIsThatOfTheHierarchy) {
+    Scene s = floor();
+    s.cameras = {PerspectiveCamera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40}};
+    s.shapes.clear(), s.instances.clear();
+    // One shape: rays that miss visit the root alone, those that meet its box the shape as well.
+    test::place(s, Rectangle{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}, MaterialId{0});
+    RenderSettings settings = settings_of(IntegratorKind::cost);
+    settings.width = settings.height = 9;
+    settings.samples_per_pixel = 4;
+    const Image image = run(prepared(std::move(s)), settings).image;
+    for (const float v : {pixel(image, 0, 0)[0], pixel(image, 0, 0)[1], pixel(image, 0, 0)[2]}) EXPECT_EQ(v, 0);
+    // Two visits are half way from the colour of one to that of four.
+    EXPECT_NEAR(pixel(image, 4, 4)[0], 0.01f, 1e-6);
+    EXPECT_NEAR(pixel(image, 4, 4)[2], 0.2f, 1e-6);
+}
+
 /// A mirror's tint, and glass reflects or transmits all that arrives, whatever refraction does to radiance.
 TEST(Inspectors, AlbedoOfSpecularSurfaces) {
     for (const bool mirror : {false, true}) {

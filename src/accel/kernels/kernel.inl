@@ -483,16 +483,21 @@ inline void trace(const World& world, const Ray* rays, const Hit* after, size_t 
     });
 }
 
-/// One ray by itself, to its end.
-template <Mode kMode>
-inline void walk(Flight& f, const World& world) {
+/// One ray by itself, to its end. see(reference) is told of everything before it is visited.
+template <Mode kMode, class See>
+inline void walk(Flight& f, const World& world, See see) {
     while (f.next != kFinished) {
+        see(f.next);
         if (ChildRef::is_leaf(f.next)) {
             visit_other<kMode>(f, world);
         } else {
             visit_node_alone<kMode>(f);
         }
     }
+}
+template <Mode kMode>
+inline void walk(Flight& f, const World& world) {
+    walk<kMode>(f, world, [](uint32_t) {});
 }
 
 template <Mode kMode>

@@ -21,6 +21,7 @@ struct Kernels {
     void (*occluded_coherent)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
     /// Accel::Occlusion, where the world has cut-outs.
     void (*occluded_or_cut_out)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
+    RayVisits (*visits)(const World&, const Ray& ray) noexcept;
 };
 
 extern const Kernels kScalarKernels, kScalarCompactKernels;

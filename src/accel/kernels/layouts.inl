@@ -29,9 +29,14 @@ namespace {
 }  // namespace compact
 
 namespace {
-constexpr Kernels kFullKernels = {full::intersect,          full::occluded,          full::next_hit,
-                                  full::intersect_coherent, full::occluded_coherent, full::occluded_or_cut_out};
-constexpr Kernels kCompactKernels = {compact::intersect,         compact::occluded,
-                                     compact::next_hit,          compact::intersect_coherent,
-                                     compact::occluded_coherent, compact::occluded_or_cut_out};
+constexpr Kernels kFullKernels = {
+    full::intersect,           full::occluded, full::next_hit, full::intersect_coherent, full::occluded_coherent,
+    full::occluded_or_cut_out, full::visits};
+constexpr Kernels kCompactKernels = {compact::intersect,
+                                     compact::occluded,
+                                     compact::next_hit,
+                                     compact::intersect_coherent,
+                                     compact::occluded_coherent,
+                                     compact::occluded_or_cut_out,
+                                     compact::visits};
 }  // namespace
