@@ -37,7 +37,10 @@ struct ConstantTexture {
 enum class Wrap : uint8_t { repeat, clamp, mirror, black };
 enum class ColorSpace : uint8_t { linear, srgb };  ///< how texel values are to be read
 
-/// Bilinear lookup at (u, v) * scale + offset; v runs downwards from the top row, as in glTF.
+// Where a texture is looked up: (u, v) * scale, turned by `rotation`, + offset. v runs downwards from the top row, as
+// in glTF; `rotation` is in degrees and takes u to -v (counter-clockwise in the image, so the image appears clockwise).
+
+/// Bilinear lookup.
 struct ImageTexture {
     ImageId image{};
     ColorSpace color_space = ColorSpace::srgb;
@@ -46,14 +49,16 @@ struct ImageTexture {
     bool bilinear = true;  ///< false: nearest texel
     Vec2 scale{1, 1};
     Vec2 offset{0, 0};
+    float rotation = 0;
 };
 
-/// Squares of side 1 in (u, v) * scale + offset; `even` where floor(u) + floor(v) is even.
+/// Squares of side 1; `even` where floor(u) + floor(v) is even.
 struct CheckerTexture {
     Rgb even{0.8f, 0.8f, 0.8f};
     Rgb odd{0.2f, 0.2f, 0.2f};
     Vec2 scale{1, 1};
     Vec2 offset{0, 0};
+    float rotation = 0;
 };
 
 using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture>;
@@ -173,6 +178,28 @@ struct OpenPbrMaterial {
 
 using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,
                               ThinGlassMaterial, DiffuseTransmissionMaterial, OpenPbrMaterial>;
+
+// --- Relief ----------------------------------------------------------------------------------------------------
+
+/// Normals in tangent space: with (r, g, b) of the texture, 2 r - 1 is along u, 2 g - 1 along -v (up in the image, as
+/// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length.
+struct NormalMap {
+    TextureId texture{};  ///< linear
+    float strength = 1;   ///< multiplies the first two, 0 … 100
+    bool flip_y = false;  ///< 2 g - 1 is along v instead
+};
+
+/// Heights, of which the surface gets the slopes.
+struct BumpMap {
+    TextureId texture{};  ///< linear; its first channel
+    float scale = 0.01f;  ///< metres for 1, may be negative
+};
+
+/// What turns the shading normals of a material's surfaces; at most one for each material.
+struct Relief {
+    MaterialId material{};
+    std::variant<NormalMap, BumpMap> map;
+};
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 
@@ -316,6 +343,7 @@ struct Scene {
     std::vector<RawImage> images;
     std::vector<Texture> textures;
     std::vector<Material> materials;
+    std::vector<Relief> reliefs;  ///< of some of the materials
     std::vector<Mesh> meshes;
     std::vector<Shape> shapes;
     std::vector<Instance> instances;

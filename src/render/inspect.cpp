@@ -16,7 +16,7 @@ struct Found {
 
 /// (n + 1) / 2 of the shading normal, in world space.
 Rgb normal_color(const Found& f) {
-    const Vec3 n = f.point.ns;
+    const Vec3 n = make_bsdf(f.context.scene.shading, f.point).frame.z;
     return Rgb{n.x, n.y, n.z} * 0.5f + Rgb{0.5f, 0.5f, 0.5f};
 }
 

@@ -37,8 +37,9 @@ uint64_t name_bytes(const Scene::Names& names) {
 
 uint64_t scene_bytes(const Scene& scene) {
     uint64_t bytes = bytes_of(scene.images) + bytes_of(scene.textures) + bytes_of(scene.materials) +
-                     bytes_of(scene.meshes) + bytes_of(scene.shapes) + bytes_of(scene.instances) +
-                     bytes_of(scene.lights) + bytes_of(scene.cameras) + name_bytes(scene.names);
+                     bytes_of(scene.reliefs) + bytes_of(scene.meshes) + bytes_of(scene.shapes) +
+                     bytes_of(scene.instances) + bytes_of(scene.lights) + bytes_of(scene.cameras) +
+                     name_bytes(scene.names);
     for (const Mesh& m : scene.meshes)
         bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
     for (const RawImage& image : scene.images) bytes += image.data.size();

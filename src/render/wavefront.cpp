@@ -118,7 +118,7 @@ void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& 
     if (hit.found()) {
         const SurfacePoint point = surface_at(shading_, ray, hit);
         vertex.position = point.p;
-        vertex.normal = point.ns;
+        vertex.normal = make_bsdf(shading_, point).frame.z;
         vertex.instance = hit.instance;
         vertex.primitive = hit.prim;
     }

@@ -73,7 +73,9 @@ protected:
         Vec3 wo;
     };
     Vertex vertex_at(const SurfacePoint& point, Vec3 wo) const noexcept {
-        Vertex out{facing(point, wo), make_bsdf(shading_, point), wo};
+        Vertex out{point, make_bsdf(shading_, point), wo};
+        out.from.ns = out.bsdf.frame.z;
+        out.from = facing(out.from, wo);
         out.from.both_sides = !only_reflects(out.bsdf);
         return out;
     }

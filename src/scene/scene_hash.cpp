@@ -11,6 +11,7 @@ public:
         list(s.images);
         list(s.textures);
         list(s.materials);
+        list(s.reliefs);
         list(s.meshes);
         list(s.shapes);
         list(s.instances);
@@ -49,8 +50,10 @@ private:
         hash_.bytes(i.data.data(), i.data.size());
     }
     void put(const ConstantTexture& t) { put(t.value); }
-    void put(const ImageTexture& t) { put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset); }
-    void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset); }
+    void put(const ImageTexture& t) {
+        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset, t.rotation);
+    }
+    void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset, t.rotation); }
     void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided, m.roughness); }
     void put(const RefractionMaterial& m) { put(m.eta); }
     void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance, m.roughness); }
@@ -71,6 +74,9 @@ private:
         put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
         put(m.geometry_opacity);
     }
+    void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
+    void put(const BumpMap& m) { put(m.texture, m.scale); }
+    void put(const Relief& r) { put(r.material, r.map); }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
     void raw(const std::vector<T>& values) {

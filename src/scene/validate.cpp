@@ -24,12 +24,14 @@ public:
         each("image", s_.images, s_.names.images);
         each("texture", s_.textures, s_.names.textures);
         each("material", s_.materials, s_.names.materials);
+        each("relief", s_.reliefs, {});
         each("mesh", s_.meshes, s_.names.meshes);
         each("shape", s_.shapes, s_.names.shapes);
         each("object", s_.instances, s_.names.instances);
         each("light", s_.lights, s_.names.lights);
         each("camera", s_.cameras, s_.names.cameras);
         light_uniqueness();
+        relief_uniqueness();
     }
 
 private:
@@ -59,9 +61,11 @@ private:
     void direction(Vec3 d, const char* what) const {
         require(is_finite(d) && (d.x != 0 || d.y != 0 || d.z != 0), what);
     }
-    void uv_transform(Vec2 scale, Vec2 offset) const {
-        require(is_finite(scale.x) && is_finite(scale.y) && is_finite(offset.x) && is_finite(offset.y),
-                "scale and offset must be finite");
+    template <class T>
+    void uv_transform(const T& t) const {
+        require(is_finite(t.scale.x) && is_finite(t.scale.y) && is_finite(t.offset.x) && is_finite(t.offset.y) &&
+                    is_finite(t.rotation),
+                "scale, offset and rotation must be finite");
     }
 
     void check(const RawImage& i) const {
@@ -74,12 +78,12 @@ private:
     void check(const ConstantTexture& t) const { color(t.value, "a colour must be finite and not negative"); }
     void check(const ImageTexture& t) const {
         refers(t.image, s_.images, "image");
-        uv_transform(t.scale, t.offset);
+        uv_transform(t);
     }
     void check(const CheckerTexture& t) const {
         color(t.even, "a colour must be finite and not negative");
         color(t.odd, "a colour must be finite and not negative");
-        uv_transform(t.scale, t.offset);
+        uv_transform(t);
     }
     void check(const DiffuseMaterial& m) const {
         refers(m.reflectance, s_.textures, "texture");
@@ -155,6 +159,25 @@ private:
         check(m.reflectance);
         check(m.roughness);
         color(m.tint, "the tint must be finite and not negative");
+    }
+
+    void linear(TextureId id) const {
+        refers(id, s_.textures, "texture");
+        const auto* image = std::get_if<ImageTexture>(&s_.textures[index(id)]);
+        require(!image || image->color_space == ColorSpace::linear,
+                "normals and heights are numbers, their texture must be linear");
+    }
+    void check(const NormalMap& m) const {
+        linear(m.texture);
+        require(m.strength >= 0 && m.strength <= 100, "the strength must be between 0 and 100");
+    }
+    void check(const BumpMap& m) const {
+        linear(m.texture);
+        require(m.scale >= -1e6f && m.scale <= 1e6f, "the scale of heights must be between -1e6 and 1e6");
+    }
+    void check(const Relief& r) const {
+        refers(r.material, s_.materials, "material");
+        check(r.map);
     }
 
     void check(const Mesh& m) const {
@@ -249,6 +272,16 @@ private:
     void check(const FisheyeCamera& c) const {
         pose(c);
         require(c.fov > 0 && c.fov <= 360, "the field of view must be in (0, 360] degrees");
+    }
+
+    void relief_uniqueness() const {
+        std::vector<bool> turned(s_.materials.size());
+        for (const Relief& relief : s_.reliefs) {
+            if (turned[index(relief.material)])
+                throw Fault{
+                    fmt::format("material {} has two reliefs, at most one is possible", index(relief.material))};
+            turned[index(relief.material)] = true;
+        }
     }
 
     void light_uniqueness() const {

@@ -77,6 +77,8 @@ struct Bsdf {
     Lobe lobe;
     Vec3 ng;
     Frame frame;  ///< z is the shading normal, x the direction of u where the lobe has one
+    /// The normal comes from a map: what the lobe sends through the surface by mistake is mirrored at it.
+    bool folded = false;
 };
 
 struct BsdfEval {

@@ -272,6 +272,8 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
             out.materials.emplace_back();
             std::visit(materials, material);
         }
+        for (uint32_t i = 0; i < out.scene.reliefs.size(); ++i)
+            out.materials[index(out.scene.reliefs[i].material)].relief = i;
         LightBuilder lights(out, diagnostics);
         for (const Light& light : out.scene.lights) lights.add(light);
         out.light_selection = LightSelection(out);

@@ -20,6 +20,7 @@ class MicrofacetEnergy;  // what rough surfaces lose, see microfacet_energy.h
 class EnvironmentTable;  // the environment's radiance and its sampling distribution, see environment.h
 
 inline constexpr uint32_t kNoLight = 0xffffffffu;
+inline constexpr uint32_t kNoRelief = 0xffffffffu;
 
 struct ShadingScene {
     Scene scene;
@@ -54,6 +55,7 @@ struct ShadingScene {
         std::shared_ptr<const MicrofacetEnergy> energy;
         Rgb mean_fresnel;  ///< of metals with a complex index
         std::shared_ptr<const OpenPbrTables> open_pbr;
+        uint32_t relief = kNoRelief;  ///< index into scene.reliefs
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
 

@@ -92,21 +92,30 @@ LocalSurface local_surface(const Disk& disk, const LocalRay&, const Hit& hit) {
     return parallelogram(disk.center, axes.u, axes.v, hit);
 }
 
-/// dp/du of a triangle, up to a positive factor.
-Vec3d local_tangent(const Mesh& mesh, const SurfacePoint& point, Vec3d) {
+SurfaceDerivatives local_derivatives(const Mesh& mesh, const SurfacePoint& point, Vec3d) {
     const uint32_t* i = mesh.indices.data() + size_t(3) * point.prim;
     const Vec3d p0 = mesh.positions[i[0]], e1 = Vec3d(mesh.positions[i[1]]) - p0, e2 = Vec3d(mesh.positions[i[2]]) - p0;
-    if (mesh.uvs.empty()) return e1;
+    if (mesh.uvs.empty()) return {e1, e2, 1};
     const Vec2 a = mesh.uvs[i[0]], b = mesh.uvs[i[1]], c = mesh.uvs[i[2]];
     const double du1 = static_cast<double>(b.x) - a.x, dv1 = static_cast<double>(b.y) - a.y;
     const double du2 = static_cast<double>(c.x) - a.x, dv2 = static_cast<double>(c.y) - a.y;
-    const double determinant = du1 * dv2 - du2 * dv1;
-    const double sign = determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
-    return (e1 * dv2 - e2 * dv1) * sign;
+    return {e1 * dv2 - e2 * dv1, e2 * du1 - e1 * du2, du1 * dv2 - du2 * dv1};
 }
-Vec3d local_tangent(const Sphere&, const SurfacePoint&, Vec3d n) { return {n.z, 0, -n.x}; }
-Vec3d local_tangent(const Rectangle& r, const SurfacePoint&, Vec3d) { return r.half_u; }
-Vec3d local_tangent(const Disk& disk, const SurfacePoint&, Vec3d) { return disk_axes(disk).u; }
+/// `n` is the normal of any length. At the poles v has no direction.
+SurfaceDerivatives local_derivatives(const Sphere& sphere, const SurfacePoint&, Vec3d n) {
+    const double around = std::sqrt(n.x * n.x + n.z * n.z), size = length(n) / (std::numbers::pi * sphere.radius);
+    const Vec3d du{n.z, 0, -n.x};
+    if (!(around > 0)) return {{}, {}, 0};
+    const Vec3d dv = Vec3d{n.y * n.x / around, -around, n.y * n.z / around} * 0.5;
+    return {du, dv, size / 2};
+}
+SurfaceDerivatives local_derivatives(const Rectangle& r, const SurfacePoint&, Vec3d) {
+    return {r.half_u, -Vec3d(r.half_v), 0.5};
+}
+SurfaceDerivatives local_derivatives(const Disk& disk, const SurfacePoint&, Vec3d) {
+    const DiskAxes axes = disk_axes(disk);
+    return {axes.u, -Vec3d(axes.v), 0.5};
+}
 
 /// The next float up or down from a finite one.
 float next_after(float x, bool up) {
@@ -144,25 +153,34 @@ SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hi
     out.ng = static_cast<Vec3>(ng);
     out.ns = static_cast<Vec3>(side > 0 ? ns : side < 0 ? -ns : ng);
     out.uv = s.uv;
+    out.wo = -ray.d;
     out.instance = hit.instance;
     out.prim = hit.prim;
     return out;
 }
 
-Vec3 tangent_at(const ShadingScene& scene, const SurfacePoint& point) noexcept {
+SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point) noexcept {
     const Instance& placed = scene.scene.instances[point.instance];
     const Affine& world_from_object = placed.world_from_object;
     // n_world = M⁻ᵀ n_object up to its length, so n_object = Mᵀ n_world.
     const Vec3d ng = transform_normal_by_inverse(world_from_object, Vec3d(point.ng));
-    const Vec3d local = std::visit(
+    SurfaceDerivatives out = std::visit(
         [&](const auto& shape) {
             if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, MeshId>)
-                return local_tangent(scene.scene.meshes[index(shape)], point, ng);
+                return local_derivatives(scene.scene.meshes[index(shape)], point, ng);
             else
-                return local_tangent(shape, point, ng);
+                return local_derivatives(shape, point, ng);
         },
         scene.scene.shapes[index(placed.shape)]);
-    return static_cast<Vec3>(normalize(transform_vector(world_from_object, local)));
+    out.du = transform_vector(world_from_object, out.du);
+    out.dv = transform_vector(world_from_object, out.dv);
+    return out;
+}
+
+Vec3 tangent_at(const ShadingScene& scene, const SurfacePoint& point) noexcept {
+    const SurfaceDerivatives d = derivatives_at(scene, point);
+    const double sign = d.determinant > 0 ? 1 : d.determinant < 0 ? -1 : 0;
+    return static_cast<Vec3>(normalize(d.du * sign));
 }
 
 SurfacePoint facing(SurfacePoint point, Vec3 wo) noexcept {

@@ -16,6 +16,7 @@ struct SurfacePoint {
     Vec3 ng;       ///< unit geometric normal: outside by the shape's own orientation, not flipped towards the ray
     Vec3 ns;       ///< unit shading normal, on the same side as ng
     Vec2 uv;
+    Vec3 wo;  ///< unit, to where the ray came from; zero where nobody said
     uint32_t instance = kNoHit;
     uint32_t prim = kNoHit;
     bool both_sides = false;  ///< light from behind ns counts as well: where lights are chosen by what they may bring
@@ -31,6 +32,14 @@ SurfacePoint facing(SurfacePoint point, Vec3 wo) noexcept;
 
 /// What choosing a light needs to know of a point that is turned so.
 inline LightReceiver receiver_at(const SurfacePoint& from) noexcept { return {from.p, from.ns, from.both_sides}; }
+
+/// How the point moves with its texture coordinates, in world space, up to a common factor: `determinant` of what they
+/// are, so that dp/du = du / determinant. Zero where the coordinates do not say.
+struct SurfaceDerivatives {
+    Vec3d du, dv;
+    double determinant = 1;
+};
+SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point) noexcept;
 
 /// In which direction u of `point` grows on the surface, in world space, of any length: what rough surfaces with a
 /// grain are turned by. Zero where the texture coordinates do not say. Of meshes without any: along the first edge.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "image/tone.h"
+#include "math/elementary.h"
 
 namespace steradian {
 namespace {
@@ -110,19 +111,39 @@ Taps taps(double u, uint32_t size, Wrap wrap, bool bilinear) {
     return {i0, wrap_index(i + 1, n, wrap), s - lower};
 }
 
-Rgb eval_kind(const Scene&, const ConstantTexture& t, Vec2) { return t.value; }
+/// Where a texture is looked up.
+struct TexturePoint {
+    double x = 0, y = 0;
+};
+/// By how much it moves when (u, v) does.
+struct TextureMatrix {
+    double xu = 1, xv = 0, yu = 0, yv = 1;
+};
+template <class T>
+TextureMatrix texture_matrix(const T& t) {
+    const double sx = t.scale.x, sy = t.scale.y;
+    if (t.rotation == 0) return {sx, 0, 0, sy};
+    const double angle = t.rotation * (std::numbers::pi / 180), c = math::cos(angle), s = math::sin(angle);
+    return {c * sx, s * sy, -s * sx, c * sy};
+}
+template <class T>
+TexturePoint texture_point(const T& t, Vec2 uv) {
+    if (t.rotation == 0)
+        return {static_cast<double>(uv.x) * t.scale.x + t.offset.x, static_cast<double>(uv.y) * t.scale.y + t.offset.y};
+    const TextureMatrix m = texture_matrix(t);
+    return {m.xu * uv.x + m.xv * uv.y + t.offset.x, m.yu * uv.x + m.yv * uv.y + t.offset.y};
+}
 
-Rgb eval_kind(const Scene&, const CheckerTexture& t, Vec2 uv) {
+Rgb look_up(const Scene&, const CheckerTexture& t, TexturePoint at) {
     const auto square = [](double x) { return std::isfinite(x) ? std::floor(x) : 0.0; };
-    const double sum = square(static_cast<double>(uv.x) * t.scale.x + t.offset.x) +
-                       square(static_cast<double>(uv.y) * t.scale.y + t.offset.y);
+    const double sum = square(at.x) + square(at.y);
     return sum - 2 * std::floor(sum / 2) == 0 ? t.even : t.odd;
 }
 
-Rgb eval_kind(const Scene& scene, const ImageTexture& t, Vec2 uv) {
+Rgb look_up(const Scene& scene, const ImageTexture& t, TexturePoint point) {
     const RawImage& image = scene.images[index(t.image)];
-    const Taps x = taps(static_cast<double>(uv.x) * t.scale.x + t.offset.x, image.width, t.wrap_u, t.bilinear);
-    const Taps y = taps(static_cast<double>(uv.y) * t.scale.y + t.offset.y, image.height, t.wrap_v, t.bilinear);
+    const Taps x = taps(point.x, image.width, t.wrap_u, t.bilinear);
+    const Taps y = taps(point.y, image.height, t.wrap_v, t.bilinear);
     const auto at = [&](int64_t i, int64_t j) {
         if (i < 0 || j < 0) return Rgb{};
         return texel(image, t.color_space, static_cast<uint32_t>(i), static_cast<uint32_t>(j));
@@ -132,6 +153,19 @@ Rgb eval_kind(const Scene& scene, const ImageTexture& t, Vec2 uv) {
     const Rgb upper = at(x.i0, y.i0) * (1 - wx) + at(x.i1, y.i0) * wx;
     const Rgb lower = at(x.i0, y.i1) * (1 - wx) + at(x.i1, y.i1) * wx;
     return upper * (1 - wy) + lower * wy;
+}
+
+Rgb eval_kind(const Scene&, const ConstantTexture& t, Vec2) { return t.value; }
+template <class T>
+Rgb eval_kind(const Scene& scene, const T& t, Vec2 uv) {
+    return look_up(scene, t, texture_point(t, uv));
+}
+
+/// What counts as one texel, in texture space.
+Vec2 texel_size(const Scene&, const CheckerTexture&) { return {1 / 256.0f, 1 / 256.0f}; }
+Vec2 texel_size(const Scene& scene, const ImageTexture& t) {
+    const RawImage& image = scene.images[index(t.image)];
+    return {1 / static_cast<float>(image.width), 1 / static_cast<float>(image.height)};
 }
 
 }  // namespace
@@ -161,6 +195,26 @@ uint64_t count_bad_texels(const RawImage& image, bool negative_too) noexcept {
 
 Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept {
     return std::visit([&](const auto& t) { return eval_kind(scene, t, uv); }, scene.textures[index(id)]);
+}
+
+Vec2 texture_slope(const Scene& scene, TextureId id, Vec2 uv) noexcept {
+    return std::visit(
+        [&](const auto& t) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(t)>, ConstantTexture>) {
+                return Vec2{0, 0};
+            } else {
+                const Vec2 texel = texel_size(scene, t);
+                const TexturePoint at = texture_point(t, uv);
+                const auto height = [&](double x, double y) {
+                    return static_cast<double>(look_up(scene, t, {at.x + x * texel.x, at.y + y * texel.y}).r);
+                };
+                const double ds = (height(0.5, 0) - height(-0.5, 0)) / texel.x;
+                const double dt = (height(0, 0.5) - height(0, -0.5)) / texel.y;
+                const TextureMatrix m = texture_matrix(t);
+                return Vec2{static_cast<float>(ds * m.xu + dt * m.yu), static_cast<float>(ds * m.xv + dt * m.yv)};
+            }
+        },
+        scene.textures[index(id)]);
 }
 
 }  // namespace steradian

@@ -16,4 +16,8 @@ uint64_t count_bad_texels(const RawImage& image, bool negative_too) noexcept;
 /// v runs downwards from the top row.
 Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
 
+/// How the first channel changes with u and v, by differences over one texel of an image (over 1/256 of the unit of
+/// other textures): continuous for images that are looked up bilinearly.
+Vec2 texture_slope(const Scene& scene, TextureId id, Vec2 uv) noexcept;
+
 }  // namespace steradian

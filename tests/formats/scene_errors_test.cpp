@@ -176,6 +176,24 @@ TEST(SceneErrors, Textures) {
             "/nonexistent/x.png: cannot open the file: No such file or directory");
 }
 
+TEST(SceneErrors, Relief) {
+    const auto material = [](std::string_view members, std::string_view message, std::string_view hint = {}) {
+        refused(
+            "\"textures\": {\"n\": {\"type\": \"constant\", \"color\": 1}}, \"materials\": {\"m\": {\"type\": "
+            "\"mirror\", " +
+                std::string(members) + "}}",
+            message, hint);
+    };
+    material("\"normal_map\": §5", "'normal_map' must be the name of a texture or a texture, got 5");
+    material("\"normal_map\": §\"x\"", "there is no texture called 'x'", "n");
+    material("\"normal_map\": §{}", "missing key 'texture'");
+    material("\"normal_map\": {\"texture\": \"n\", \"strength\": §-1}", "'strength' must be from 0 to 100, got -1");
+    material("\"normal_map\": {\"texture\": \"n\", §\"scale\": 1}", "unknown key 'scale'", "");
+    material("\"bump_map\": §\"n\"", "'bump_map' must be an object");
+    material("\"normal_map\": \"n\", §\"bump_map\": {\"texture\": \"n\"}",
+             "either 'normal_map' or 'bump_map', not both");
+}
+
 TEST(SceneErrors, Materials) {
     refused("\"materials\": §1", "'materials' must be an object with a material for each name");
     refused("\"materials\": {\"m\": {\"type\": §\"difuse\"}}", "the type of material 'm' cannot be \"difuse\"",

@@ -101,6 +101,22 @@ TEST_F(SceneFiles, ALightOnAModelLightsEachPartOnce) {
         "'two' is a light already");
 }
 
+/// Normals and heights are not colours.
+TEST_F(SceneFiles, ImagesOfNumbersAreLinear) {
+    const LoadedScene loaded = load(scene_with(R"("materials": {
+        "a": {"type": "mirror", "normal_map": {"texture": {"type": "image", "path": "image.png"}}},
+        "b": {"type": "mirror", "bump_map": {"texture": {"type": "image", "path": "image.png", "color_space": "linear"}}}})"));
+    ASSERT_EQ(loaded.scene.textures.size(), 2u);
+    for (const Texture& texture : loaded.scene.textures)
+        EXPECT_EQ(std::get<ImageTexture>(texture).color_space, ColorSpace::linear);
+    refused(scene_with(R"("textures": {"n": {"type": "image", "path": "image.png"}},
+        "materials": {"a": {"type": "mirror", "normal_map": §"n"}})"),
+            "its texture must be linear");
+    refused(scene_with(R"("materials": {"a": {"type": "mirror", "bump_map": {"texture":
+        §{"type": "image", "path": "image.png", "color_space": "srgb"}}}})"),
+            "its texture must be linear");
+}
+
 TEST_F(SceneFiles, ImagesAreReadOnceAndInTheirColourSpace) {
     const LoadedScene loaded = load(scene_with(R"("textures": {
         "a": {"type": "image", "path": "image.png"}, "b": {"type": "image", "path": "./image.png", "color_space": "linear"},

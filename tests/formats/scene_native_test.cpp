@@ -407,5 +407,37 @@ TEST(NativeScene, TheFluxOfASpotIsItsIntegratedIntensity) {
     }
 }
 
+TEST(NativeScene, NormalAndBumpMaps) {
+    const LoadedScene loaded =
+        load_good(scene_with(R"("textures": {"flat": {"type": "constant", "color": [0.5, 0.5, 1]}},
+        "materials": {
+            "plain": {"type": "mirror"},
+            "short": {"type": "glass", "normal_map": "flat"},
+            "long": {"type": "diffuse", "reflectance": 0.5, "normal_map": {"texture": "flat", "strength": 2, "flip_y": true}},
+            "bumpy": {"type": "open_pbr", "bump_map": {"texture": {"type": "checkerboard"}, "scale": -0.5}}})"));
+    const Scene& scene = loaded.scene;
+    ASSERT_EQ(scene.reliefs.size(), 3u);
+    EXPECT_EQ(index(scene.reliefs[0].material), 1u);
+    const auto& first = std::get<NormalMap>(scene.reliefs[0].map);
+    EXPECT_EQ(index(first.texture), 0u);
+    EXPECT_EQ(first.strength, 1);
+    EXPECT_FALSE(first.flip_y);
+    EXPECT_EQ(index(scene.reliefs[1].material), 2u);
+    EXPECT_EQ(std::get<NormalMap>(scene.reliefs[1].map).strength, 2);
+    EXPECT_TRUE(std::get<NormalMap>(scene.reliefs[1].map).flip_y);
+    EXPECT_EQ(index(scene.reliefs[2].material), 3u);
+    const auto& bump = std::get<BumpMap>(scene.reliefs[2].map);
+    EXPECT_EQ(bump.scale, -0.5f);
+    EXPECT_TRUE(std::holds_alternative<CheckerTexture>(scene.textures[index(bump.texture)]));
+}
+
+TEST(NativeScene, TexturesAreTurned) {
+    const LoadedScene loaded = load_good(scene_with(
+        R"("textures": {"a": {"type": "checkerboard", "rotation": 30, "scale": 2, "offset": [1, 2]}, "b": {"type": "checkerboard"}})"));
+    EXPECT_EQ(std::get<CheckerTexture>(loaded.scene.textures[0]).rotation, 30);
+    EXPECT_EQ(std::get<CheckerTexture>(loaded.scene.textures[0]).offset, (Vec2{1, 2}));
+    EXPECT_EQ(std::get<CheckerTexture>(loaded.scene.textures[1]).rotation, 0);
+}
+
 }  // namespace
 }  // namespace steradian::test

@@ -24,6 +24,7 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(ThinGlassMaterial{}));
     add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{}));
     add<MaterialId>(s.materials, Material(OpenPbrMaterial{}));
+    s.reliefs = {{MaterialId{0}, NormalMap{}}, {MaterialId{1}, BumpMap{}}};
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
     add<ShapeId>(s.shapes, Shape(MeshId{0}));
@@ -98,6 +99,13 @@ std::vector<Change> changes() {
         [](Scene& s) { open_pbr(s).coat_darkening = 0; },
         [](Scene& s) { open_pbr(s).geometry_opacity.value = 0; },
         [](Scene& s) { s.materials[3] = RefractionMaterial{}; },
+        [](Scene& s) { s.reliefs[0].material = MaterialId{2}; },
+        [](Scene& s) { std::get<NormalMap>(s.reliefs[0].map).texture = TextureId{1}; },
+        [](Scene& s) { std::get<NormalMap>(s.reliefs[0].map).strength = 2; },
+        [](Scene& s) { std::get<NormalMap>(s.reliefs[0].map).flip_y = true; },
+        [](Scene& s) { std::get<BumpMap>(s.reliefs[1].map).texture = TextureId{1}; },
+        [](Scene& s) { std::get<BumpMap>(s.reliefs[1].map).scale = 2; },
+        [](Scene& s) { s.reliefs.pop_back(); },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },
         [](Scene& s) { s.meshes[0].uvs[1].x = 0.5f; },

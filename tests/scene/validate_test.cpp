@@ -59,6 +59,37 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};
               }},
+        Fault{"relief 0: refers to material 5",
+              [](Scene& s) {
+                  s.reliefs = {{MaterialId{5}, NormalMap{}}};
+              }},
+        Fault{"relief 0: refers to texture 3",
+              [](Scene& s) {
+                  s.reliefs = {{MaterialId{0}, BumpMap{TextureId{3}}}};
+              }},
+        Fault{"the strength must be between 0 and 100",
+              [](Scene& s) {
+                  s.reliefs = {{MaterialId{0}, NormalMap{TextureId{0}, kNan}}};
+              }},
+        Fault{"the scale of heights",
+              [](Scene& s) {
+                  s.reliefs = {{MaterialId{0}, BumpMap{TextureId{0}, 2e6f}}};
+              }},
+        Fault{"has two reliefs",
+              [](Scene& s) {
+                  s.reliefs = {{MaterialId{0}, NormalMap{}}, {MaterialId{0}, BumpMap{}}};
+              }},
+        Fault{"their texture must be linear",
+              [](Scene& s) {
+                  s.images = {{1, 1, 1, TexelFormat::u8, std::vector<std::byte>(1)}};
+                  s.textures.push_back(ImageTexture{});
+                  s.reliefs = {{MaterialId{0}, NormalMap{TextureId{1}}}};
+              }},
+        Fault{"rotation must be finite",
+              [](Scene& s) {
+                  s.textures.push_back(CheckerTexture{});
+                  std::get<CheckerTexture>(s.textures.back()).rotation = kNan;
+              }},
         Fault{"n must be finite and positive",
               [](Scene& s) {
                   s.materials[0] = ConductorMaterial{ComplexIndex{{1, 0, 1}, {}}, {}};
@@ -146,17 +177,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"rotation must be finite",
               [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_rotation = kNan; }},
         Fault{"height must be positive",
-              [](Scene& s) {
-                  s.cameras[0] = OrthographicCamera{{}, {0, 0, 1}, {0, 1, 0}, 0};
-              }},
-        Fault{"position must be finite",
-              [](Scene& s) {
-                  s.cameras[0] = PanoramaCamera{{kNan, 0, 0}};
-              }},
-        Fault{"(0, 360]",
-              [](Scene& s) {
-                  s.cameras[0] = FisheyeCamera{{}, {0, 0, 1}, {0, 1, 0}, 361};
-              }},
+              [](Scene& s) { s.cameras[0] = OrthographicCamera{{}, {0, 0, 1}, {0, 1, 0}, 0}; }},
+        Fault{"position must be finite", [](Scene& s) { s.cameras[0] = PanoramaCamera{{kNan, 0, 0}}; }},
+        Fault{"(0, 360]", [](Scene& s) { s.cameras[0] = FisheyeCamera{{}, {0, 0, 1}, {0, 1, 0}, 361}; }},
         Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
 
 TEST(Validate, AcceptsAGoodScene) {

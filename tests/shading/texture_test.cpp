@@ -99,6 +99,47 @@ TEST(Texture, ScaleAndOffset) {
     EXPECT_EQ(at(scene, -0.625f, 0), 0);  // -0.75
 }
 
+/// By a quarter: u goes to -v, v to u; scale before, offset after it.
+TEST(Texture, Rotation) {
+    // Columns 0 … 3 of a 4 × 1 image, rows of a 1 × 4 one.
+    Scene wide = grey(4, 1, {0, 1, 2, 3}, Wrap::repeat, Wrap::repeat);
+    auto& t = std::get<ImageTexture>(wide.textures[0]);
+    t.rotation = 90;
+    t.scale = {5, 2};
+    t.offset = {0.125f, 0};
+    for (const float v : {0.0f, 0.125f, 0.25f, 0.375f})
+        for (const float u : {0.1f, 0.7f}) EXPECT_NEAR(at(wide, u, v), 8 * v, 1e-6) << v;  // s = 2 v + 1/8
+    Scene high = grey(1, 4, {0, 1, 2, 3}, Wrap::repeat, Wrap::repeat);
+    auto& down = std::get<ImageTexture>(high.textures[0]);
+    down.rotation = 90;
+    for (const float u : {-0.125f, -0.375f, -0.625f, -0.875f}) EXPECT_NEAR(at(high, u, 0.3f), -4 * u - 0.5f, 1e-6);
+    // 45 degrees: (1, 1) / √2 goes to (1, 0).
+    wide = grey(4, 1, {0, 1, 2, 3}, Wrap::repeat, Wrap::repeat);
+    std::get<ImageTexture>(wide.textures[0]).rotation = 45;
+    const float half = std::sqrt(0.5f);
+    EXPECT_NEAR(at(wide, 0.625f * half, 0.625f * half), 2, 1e-5);
+    EXPECT_NEAR(at(wide, 0.625f * half + 3, 0.625f * half - 3), 2, 1e-5);
+}
+
+/// Of the heights themselves between texel centres, turned back into u and v.
+TEST(Texture, Slope) {
+    Scene scene = grey(4, 4, {0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7, 8, 9}, Wrap::clamp, Wrap::clamp);
+    auto& t = std::get<ImageTexture>(scene.textures[0]);
+    const auto expect_slope = [&](Vec2 uv, float du, float dv) {
+        const Vec2 slope = texture_slope(scene, TextureId{0}, uv);
+        EXPECT_NEAR(slope.x, du, 1e-4);
+        EXPECT_NEAR(slope.y, dv, 1e-4);
+    };
+    expect_slope({0.4f, 0.6f}, 4, 8);
+    expect_slope({0.5f, 0.5f}, 4, 8);
+    t.scale = {2, 0.5f};
+    expect_slope({0.25f, 1}, 8, 4);
+    t.scale = {1, 1}, t.rotation = 90;
+    expect_slope({-0.5f, 0.5f}, -8, 4);  // s = v, t = -u
+    EXPECT_EQ(texture_slope(scene, add<TextureId>(scene.textures, Texture{ConstantTexture{}}), {0.3f, 0.1f}),
+              (Vec2{0, 0}));
+}
+
 TEST(Texture, Checkerboard) {
     Scene scene;
     scene.textures.push_back(CheckerTexture{{1, 1, 1}, {0, 0, 0}, {2, 4}, {0, 0.5f}});

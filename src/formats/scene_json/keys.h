@@ -27,15 +27,16 @@ inline constexpr Key kPanoramaCamera[] = {"type", "position", "look_at", "up"};
 inline constexpr Key kFisheyeCamera[] = {"type", "position", "look_at", "up", "fov", "projection"};
 
 inline constexpr Key kConstantTexture[] = {"type", "color"};
-inline constexpr Key kImageTexture[] = {"type", "path", "color_space", "wrap", "filter", "scale", "offset"};
-inline constexpr Key kCheckerboardTexture[] = {"type", "color0", "color1", "scale", "offset"};
+inline constexpr Key kImageTexture[] = {"type", "path", "color_space", "wrap", "filter", "scale", "offset", "rotation"};
+inline constexpr Key kCheckerboardTexture[] = {"type", "color0", "color1", "scale", "offset", "rotation"};
 
-inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided", "roughness"};
-inline constexpr Key kRefraction[] = {"type", "eta"};
-inline constexpr Key kGlass[] = {"type", "eta", "reflectance", "transmittance", "roughness", "alpha"};
-inline constexpr Key kMirror[] = {"type", "reflectance"};
-inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance"};
-inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance"};
+inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided", "roughness", "normal_map", "bump_map"};
+inline constexpr Key kRefraction[] = {"type", "eta", "normal_map", "bump_map"};
+inline constexpr Key kGlass[] = {"type",      "eta",   "reflectance", "transmittance",
+                                 "roughness", "alpha", "normal_map",  "bump_map"};
+inline constexpr Key kMirror[] = {"type", "reflectance", "normal_map", "bump_map"};
+inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance", "normal_map", "bump_map"};
+inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance", "normal_map", "bump_map"};
 inline constexpr Key kOpenPbr[] = {"type",
                                    "base_weight",
                                    "base_color",
@@ -59,9 +60,14 @@ inline constexpr Key kOpenPbr[] = {"type",
                                    "coat_roughness_anisotropy",
                                    "coat_ior",
                                    "coat_darkening",
-                                   "geometry_opacity"};
-inline constexpr Key kConductor[] = {"type",      "metal", "n",   "k", "reflectance", "edge_reflectance",
-                                     "roughness", "alpha", "tint"};
+                                   "geometry_opacity",
+                                   "normal_map",
+                                   "bump_map"};
+inline constexpr Key kConductor[] = {"type",      "metal", "n",    "k",          "reflectance", "edge_reflectance",
+                                     "roughness", "alpha", "tint", "normal_map", "bump_map"};
+
+inline constexpr Key kNormalMap[] = {"texture", "strength", "flip_y"};
+inline constexpr Key kBumpMap[] = {"texture", "scale"};
 
 inline constexpr Key kMeshShape[] = {"type", "path", "vertices", "triangles", "normals", "uvs"};
 inline constexpr Key kSphereShape[] = {"type", "center", "radius"};
@@ -111,6 +117,8 @@ inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiff
                                                 {"thin_glass_material", keys::kThinGlass},
                                                 {"diffuse_transmission_material", keys::kDiffuseTransmission},
                                                 {"open_pbr_material", keys::kOpenPbr}};
+inline constexpr ObjectSpec kNormalMapSpec{"normal_map", keys::kNormalMap};
+inline constexpr ObjectSpec kBumpMapSpec{"bump_map", keys::kBumpMap};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
                                              {"sphere_shape", keys::kSphereShape},
                                              {"rectangle_shape", keys::kRectangleShape},

@@ -25,10 +25,10 @@ private:
 
     // native_surfaces.cpp
     void read_textures(Value value);
-    TextureId read_texture(Value value, const std::string& name);
-    TextureId read_image_texture(Value value, const std::string& name);
-    /// The name of a texture, or a texture; nothing for other values.
-    std::optional<TextureId> find_texture(Value value);
+    TextureId read_texture(Value value, const std::string& name, bool numbers = false);
+    TextureId read_image_texture(Value value, const std::string& name, bool numbers);
+    /// The name of a texture, or a texture; nothing for other values. Images of `numbers` are linear by themselves.
+    std::optional<TextureId> find_texture(Value value, bool numbers = false);
     /// A colour, the name of a texture, or a texture.
     TextureId read_reflectance(ObjectReader& material, std::string_view key = "reflectance");
     /// "roughness" or "alpha": a number, two, or a texture.
@@ -38,6 +38,10 @@ private:
     ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback);
     OpenPbrMaterial read_open_pbr(ObjectReader& material);
     DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
+    /// "normal_map" or "bump_map"; `material` is filled in later.
+    std::optional<Relief> read_relief(ObjectReader& material);
+    /// A texture of numbers that are no colours: linear.
+    TextureId read_numbers(Value value, std::string_view what);
     void read_materials(Value value);
     MaterialId read_material(Value value, const std::string& name);
     /// A name or a material.

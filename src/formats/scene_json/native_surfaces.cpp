@@ -16,6 +16,14 @@ void expect_names(const Source& source, Value value, std::string_view what, std:
                                         " for each name, got " + json::describe(value));
 }
 
+/// Where a texture is looked up.
+template <class T>
+void read_placement(ObjectReader& reader, T& texture) {
+    texture.scale = reader.vec2_or("scale", texture.scale, kTextureScale);
+    texture.rotation = reader.number_or("rotation", texture.rotation, json::kAnyAngle);
+    texture.offset = reader.vec2_or("offset", texture.offset, kTextureScale);
+}
+
 /// One word for both directions, or two.
 void read_wrap(ObjectReader& reader, ImageTexture& texture) {
     const auto value = reader.find("wrap");
@@ -40,10 +48,10 @@ void NativeLoader::read_textures(Value value) {
         textures_.insert(member.key, read_texture(member.value, std::string(member.key)));
 }
 
-TextureId NativeLoader::read_texture(Value value, const std::string& name) {
+TextureId NativeLoader::read_texture(Value value, const std::string& name, bool numbers) {
     const std::string what = with_name("texture", name);
     const size_t type = read_type(source_, value, what, kTextureTypes);
-    if (type == 1) return read_image_texture(value, name);
+    if (type == 1) return read_image_texture(value, name, numbers);
 
     ObjectReader reader(source_, value, kTextureSpecs[type], what);
     reader.require("type");
@@ -54,8 +62,7 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name) {
         CheckerTexture checker;
         checker.even = reader.color_or("color0", checker.even, json::kReflectance);
         checker.odd = reader.color_or("color1", checker.odd, json::kReflectance);
-        checker.scale = reader.vec2_or("scale", checker.scale, kTextureScale);
-        checker.offset = reader.vec2_or("offset", checker.offset, kTextureScale);
+        read_placement(reader, checker);
         context_.warn_about_reflectance(checker.even, value.offset());
         context_.warn_about_reflectance(checker.odd, value.offset());
         texture = checker;
@@ -66,26 +73,27 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name) {
     return assets_.add_texture(texture, name);
 }
 
-TextureId NativeLoader::read_image_texture(Value value, const std::string& name) {
+TextureId NativeLoader::read_image_texture(Value value, const std::string& name, bool numbers) {
     ObjectReader reader(source_, value, kTextureSpecs[1], with_name("texture", name));
     reader.require("type");
     const NamedPath path = read_path(reader);
     ImageTexture texture;
     read_wrap(reader, texture);
     texture.bilinear = reader.choice_or("filter", 1, kTextureFilters) == 1;
-    texture.scale = reader.vec2_or("scale", texture.scale, kTextureScale);
-    texture.offset = reader.vec2_or("offset", texture.offset, kTextureScale);
+    read_placement(reader, texture);
     const auto space = reader.find("color_space");
     const size_t chosen = space ? json::read_choice(source_, *space, "'color_space'", kColorSpaces) : 0;
     reader.finish();
     texture.image = source_.take(assets_.image(path.path), path.offset);
-    texture.color_space = space ? static_cast<ColorSpace>(chosen) : assets_.default_color_space(texture.image);
+    texture.color_space = space     ? static_cast<ColorSpace>(chosen)
+                          : numbers ? ColorSpace::linear
+                                    : assets_.default_color_space(texture.image);
     return assets_.add_texture(texture, name);
 }
 
-std::optional<TextureId> NativeLoader::find_texture(Value value) {
+std::optional<TextureId> NativeLoader::find_texture(Value value, bool numbers) {
     if (value.is(Kind::string)) return textures_.get(source_, value.string(), value.offset());
-    if (value.is(Kind::object)) return read_texture(value, "");
+    if (value.is(Kind::object)) return read_texture(value, "", numbers);
     return std::nullopt;
 }
 
@@ -149,6 +157,49 @@ DiffuseTransmissionMaterial NativeLoader::read_diffuse_transmission(ObjectReader
     return out;
 }
 
+TextureId NativeLoader::read_numbers(Value value, std::string_view what) {
+    const auto texture = find_texture(value, /*numbers=*/true);
+    if (!texture)
+        source_.fail(value.offset(),
+                     std::string(what) + " must be the name of a texture or a texture, got " + json::describe(value));
+    const auto* image = std::get_if<ImageTexture>(&scene().textures[index(*texture)]);
+    if (image && image->color_space == ColorSpace::srgb)
+        source_.fail(value.offset(), std::string(what) + " has numbers, not colours: its texture must be linear",
+                     "give the texture \"color_space\": \"linear\"");
+    return *texture;
+}
+
+std::optional<Relief> NativeLoader::read_relief(ObjectReader& material) {
+    static constexpr Range kStrength{0, 100}, kHeight{-1e6, 1e6};
+    const auto normals = material.find("normal_map"), heights = material.find("bump_map");
+    if (normals && heights)
+        source_.fail(material.key_offset("bump_map"), "either 'normal_map' or 'bump_map', not both");
+    Relief out;
+    if (normals) {
+        NormalMap map;
+        if (normals->is(Kind::object)) {
+            ObjectReader reader(source_, *normals, kNormalMapSpec, "'normal_map'");
+            map.texture = read_numbers(reader.require("texture"), "a normal map");
+            map.strength = reader.number_or("strength", map.strength, kStrength);
+            map.flip_y = reader.boolean_or("flip_y", map.flip_y);
+            reader.finish();
+        } else {
+            map.texture = read_numbers(*normals, "'normal_map'");
+        }
+        out.map = map;
+    } else if (heights) {
+        ObjectReader reader(source_, *heights, kBumpMapSpec, "'bump_map'");
+        BumpMap map;
+        map.texture = read_numbers(reader.require("texture"), "a bump map");
+        map.scale = reader.number_or("scale", map.scale, kHeight);
+        reader.finish();
+        out.map = map;
+    } else {
+        return std::nullopt;
+    }
+    return out;
+}
+
 void NativeLoader::read_materials(Value value) {
     expect_names(source_, value, "materials", "material");
     for (const Member member : value.members())
@@ -207,8 +258,14 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             material = read_diffuse_transmission(reader);
             break;
     }
+    std::optional<Relief> relief = read_relief(reader);
     reader.finish();
-    return assets_.add_material(material, name);
+    const MaterialId id = assets_.add_material(material, name);
+    if (relief) {
+        relief->material = id;
+        scene().reliefs.push_back(*relief);
+    }
+    return id;
 }
 
 MaterialId NativeLoader::use_material(Value value) {
