@@ -47,6 +47,9 @@ struct ImageTexture {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
     bool bilinear = true;  ///< false: nearest texel
+    /// With bilinear: between the two levels of a MIP map that fit how much of the surface the ray sees. The picture
+    /// then converges to one of a blurred texture.
+    bool mip_map = false;
     Vec2 scale{1, 1};
     Vec2 offset{0, 0};
     float rotation = 0;
@@ -61,7 +64,10 @@ struct CheckerTexture {
     float rotation = 0;
 };
 
-using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture>;
+/// The colours of a mesh's vertices, blended over each triangle; white on what has none.
+struct VertexColorTexture {};
+
+using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture, VertexColorTexture>;
 
 // --- Materials -------------------------------------------------------------------------------------------------
 
@@ -176,8 +182,16 @@ struct OpenPbrMaterial {
     FloatInput geometry_opacity{1};
 };
 
+/// Two materials on one surface: what scatters is (1 - weight) of the first and weight of the second, each with its own
+/// relief. Both come before this one in Scene::materials and may be mixes: of at most kMaxMixed materials in all.
+inline constexpr uint32_t kMaxMixed = 4;
+struct MixMaterial {
+    MaterialId first{}, second{};
+    FloatInput weight{0.5f};
+};
+
 using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial, MirrorMaterial, ConductorMaterial,
-                              ThinGlassMaterial, DiffuseTransmissionMaterial, OpenPbrMaterial>;
+                              ThinGlassMaterial, DiffuseTransmissionMaterial, OpenPbrMaterial, MixMaterial>;
 
 // --- Relief ----------------------------------------------------------------------------------------------------
 
@@ -209,6 +223,7 @@ struct Mesh {
     std::vector<Vec3> normals;      ///< empty (flat) or one per position; need not be unit length
     std::vector<Vec2> uvs;          ///< empty or one per position
     std::vector<uint32_t> indices;  ///< three per triangle, each < positions.size()
+    std::vector<Rgb> colors = {};   ///< empty or one per position; see VertexColorTexture
 };
 
 /// Normals point outwards. u runs with the angle about +Y from +X towards -Z, v from the north pole down.

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "image/decode.h"
+#include "image/tone.h"
 #include "math/vector.h"
 
 namespace steradian {
@@ -110,10 +111,11 @@ ColorSpace Assets::default_color_space(ImageId image) const {
     return format == TexelFormat::u8 || format == TexelFormat::u16 ? ColorSpace::srgb : ColorSpace::linear;
 }
 
-Result<size_t> Assets::load_model(std::string_view named) {
+Result<size_t> Assets::load_model(std::string_view named, std::optional<ColorSpace> colors) {
     auto path = resolve(named);
     if (!path) return std::move(path).error();
-    const std::string key = identity(*path);
+    const std::string way = !colors ? "" : *colors == ColorSpace::srgb ? "|srgb" : "|linear";
+    const std::string key = identity(*path) + way;
     if (const auto known = model_index_.find(key); known != model_index_.end()) return known->second;
     auto file = load_mesh_file(*path, options_);
     if (!file) return std::move(file).error();
@@ -123,8 +125,11 @@ Result<size_t> Assets::load_model(std::string_view named) {
     if (file->parts.empty()) loaded_.diagnostics.warn("the model has no faces", {*path, 0, 0, {}});
     Model model;
     for (MeshPart& part : file->parts) {
+        const bool has_colors = !part.mesh.colors.empty();
+        if (colors.value_or(file->color_space) == ColorSpace::srgb)
+            for (Rgb& c : part.mesh.colors) c = {srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)};
         const MeshId mesh = add_mesh(std::move(part.mesh), part.name.empty() ? std::string(named) : part.name);
-        model.parts.push_back({add_shape(mesh, part.name), part.material, part.name});
+        model.parts.push_back({add_shape(mesh, part.name), part.material, part.name, has_colors});
     }
     model.dropped_faces = file->dropped_faces;
     model.materials = std::move(file->materials);
@@ -145,7 +150,7 @@ Result<InstanceRange> Assets::place(size_t model_number, const Placement& placem
             if (!made) return std::move(made).error();
             material = *made;
         } else {
-            material = placement.material ? *placement.material : default_material(placement.emitter);
+            material = placement.material ? *placement.material : default_material(placement.emitter, part.has_colors);
         }
         const InstanceId instance = add_instance({part.shape, material, placement.world_from_object},
                                                  placement.name.empty() ? part.name : placement.name);
@@ -237,12 +242,16 @@ void Assets::add_camera(Camera camera, std::string name) {
     loaded_.scene.cameras.push_back(std::move(camera));
 }
 
-MaterialId Assets::default_material(bool emitter) {
+MaterialId Assets::default_material(bool emitter, bool has_colors) {
     if (emitter) {
         if (!black_) black_ = add_diffuse({0, 0, 0}, false, "");
         return *black_;
     }
 
+    if (has_colors) {
+        if (!painted_) painted_ = add_material(DiffuseMaterial{add_texture(VertexColorTexture{}, ""), true}, "");
+        return *painted_;
+    }
     if (!neutral_) neutral_ = add_diffuse({0.5f, 0.5f, 0.5f}, true, "");
     return *neutral_;
 }

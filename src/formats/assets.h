@@ -18,6 +18,7 @@ struct Model {
         ShapeId shape;
         int material = -1;  ///< index into `materials`, -1: none given
         std::string name;
+        bool has_colors = false;  ///< of its vertices
     };
     std::vector<Part> parts;
     std::vector<MeshMaterial> materials;
@@ -58,7 +59,8 @@ public:
     ColorSpace default_color_space(ImageId image) const;
 
     /// Index for model().
-    Result<size_t> load_model(std::string_view named);
+    /// `colors` is how the colours of its vertices are meant, if it has some; nothing: as MeshFile says.
+    Result<size_t> load_model(std::string_view named, std::optional<ColorSpace> colors = std::nullopt);
     Model& model(size_t i) { return models_[i]; }
     /// One instance for each part. Fails when an image of the file's materials does.
     Result<InstanceRange> place(size_t model, const Placement& placement);
@@ -72,8 +74,9 @@ public:
     void add_light(Light light, std::string name);
     void add_camera(Camera camera, std::string name);
 
-    /// For surfaces that nothing is said about: two-sided grey of reflectance 0.5; black for emitters.
-    MaterialId default_material(bool emitter);
+    /// For surfaces that nothing is said about: two-sided grey of reflectance 0.5, or what colour its vertices
+    /// have; black for emitters.
+    MaterialId default_material(bool emitter, bool has_colors = false);
 
 private:
     Result<MaterialId> file_material(Model& model, int index);
@@ -87,7 +90,7 @@ private:
     std::map<std::string, ImageId> images_;
     std::map<std::string, size_t> model_index_;
     std::vector<Model> models_;
-    std::optional<MaterialId> neutral_, black_;
+    std::optional<MaterialId> neutral_, black_, painted_;
 };
 
 }  // namespace steradian

@@ -38,8 +38,9 @@ struct MeshFile {
     std::vector<MeshPart> parts;          ///< in order of first use; empty when the file has no faces
     std::vector<MeshMaterial> materials;  ///< those that parts use, in order of first use
     Diagnostics diagnostics;
-    std::vector<std::string> libraries;  ///< the MTL files that were read
-    uint64_t dropped_faces = 0;          ///< whose coordinates are not usable (see usable_position)
+    std::vector<std::string> libraries;         ///< the MTL files that were read
+    ColorSpace color_space = ColorSpace::srgb;  ///< of the vertices' colours, which are as in the file
+    uint64_t dropped_faces = 0;                 ///< whose coordinates are not usable (see usable_position)
 };
 
 /// Counts faces as dropped and warns about them; nothing when there are none.

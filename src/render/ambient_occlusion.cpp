@@ -17,7 +17,7 @@ private:
     void bounce(uint32_t) noexcept override {
         each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) {
             if (!hit.found()) return;
-            const SurfacePoint from = vertex_at(surface_at(shading_, ray, hit), -ray.d).from;
+            const SurfacePoint from = vertex_at(arrive(id, ray, hit), -ray.d).from;
             const Vec2 u = c_.sampler.get_2d(path(id).key, kBounceDimension + 2);
             const Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
             const Vec3 wi = normalize(Frame::from_z(from.ns).to_world(local));

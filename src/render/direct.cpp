@@ -20,7 +20,7 @@ private:
             add_emission(path, environment_radiance(shading_, ray.d));
             return;
         }
-        const SurfacePoint point = surface_at(shading_, ray, hit);
+        const SurfacePoint point = arrive(id, ray, hit);
         const Vec3 wo = -ray.d;
         add_emission(path, emitted_radiance(shading_, point, wo));
         if (depth >= c_.settings.max_depth) return;
@@ -47,6 +47,7 @@ private:
         if (c_.recorder)
             c_.recorder->bounce({next->wi, next->weight, next->pdf, next->specular, next->transmitted, 1, true});
         path.throughput = path.throughput * next->weight;
+        turn(id, point, *next);
         continue_along(id, spawn_ray(point, next->wi));
     }
 };

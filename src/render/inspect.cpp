@@ -89,7 +89,7 @@ private:
     void bounce(uint32_t) noexcept override {
         each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) {
             if (!hit.found()) return;
-            const SurfacePoint point = surface_at(shading_, ray, hit);
+            const SurfacePoint point = arrive(id, ray, hit);
             path(id).radiance = Color({c_, point, -ray.d, path(id).key});
         });
     }

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "render/film.h"
 #include "render/integrator.h"
+#include "shading/mip_map.h"
 #include "shading/shading_scene.h"
 
 namespace steradian {
@@ -41,7 +43,8 @@ uint64_t scene_bytes(const Scene& scene) {
                      bytes_of(scene.instances) + bytes_of(scene.lights) + bytes_of(scene.cameras) +
                      name_bytes(scene.names);
     for (const Mesh& m : scene.meshes)
-        bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
+        bytes +=
+            bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices) + bytes_of(m.colors);
     for (const RawImage& image : scene.images) bytes += image.data.size();
     return bytes;
 }
@@ -62,6 +65,19 @@ uint64_t table_bytes(const Scene& scene, const Light& light) {
         return uint64_t(image.width) * image.height * sizeof(double);
     }
     return 0;
+}
+
+/// Of the MIP maps: one for each image and way of reading it that a texture asks for.
+uint64_t mip_map_bytes(const Scene& scene) {
+    std::set<std::pair<ImageId, ColorSpace>> made;
+    uint64_t bytes = 0;
+    for (const Texture& texture : scene.textures) {
+        const auto* t = std::get_if<ImageTexture>(&texture);
+        if (t && t->mip_map && t->bilinear && index(t->image) < scene.images.size() &&
+            made.insert({t->image, t->color_space}).second)
+            bytes += MipMap::bytes(scene.images[index(t->image)]);
+    }
+    return bytes;
 }
 
 }  // namespace
@@ -87,6 +103,7 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
         instances * sizeof(ShadingScene::InstanceData) +
         scene.lights.size() * (sizeof(ShadingScene::LightData) + LightTree::kBytesPerLight + sizeof(double));
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
+    out.hierarchy += mip_map_bytes(scene);
     out.build = triangles * triangle_build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
     out.picture = picture_bytes(settings, execution);
     return out;

@@ -51,7 +51,7 @@ private:
             add_emission(id, environment_radiance(shading_, ray.d), shading_.environment_light, ray.d, nullptr, depth);
             return;
         }
-        const SurfacePoint point = surface_at(shading_, ray, hit);
+        const SurfacePoint point = arrive(id, ray, hit);
         const Vec3 wo = -ray.d;
         const uint32_t light = shading_.instances[point.instance].area_light;
         add_emission(id, emitted_radiance(shading_, point, wo), light, ray.d, &point, depth);
@@ -124,6 +124,7 @@ private:
             c_.recorder->bounce(
                 {next->wi, next->weight, next->pdf, next->specular, next->transmitted, survival, survives});
         if (!survives) return;
+        turn(id, point, *next);
         path.throughput = path.throughput / survival;
         continue_along(id, spawn_ray(point, next->wi));
     }

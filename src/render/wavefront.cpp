@@ -87,6 +87,7 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         if (!c_.camera.sees(film)) continue;
         const Vec2 lens = c_.camera.has_lens() ? c_.sampler.get_2d(path.key, kLensDimension) : Vec2{};
         rays_.push_back(c_.camera.generate(film, lens));
+        if (shading_.uses_footprints()) path.cone = c_.camera.cone(film);
         active_.push_back(i);
     }
     counters_->camera_rays += active_.size();

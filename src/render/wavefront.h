@@ -9,6 +9,7 @@
 #include "render/recorder.h"
 #include "shading/bsdf.h"
 #include "shading/light.h"
+#include "shading/ray_cone.h"
 
 namespace steradian {
 
@@ -42,6 +43,7 @@ protected:
         uint32_t x, y, pixel;
         float weight;  ///< the filter's
         Rgb throughput, radiance;
+        RayCone cone;  ///< of the ray under way; kept only where the scene uses footprints
     };
 
     /// Shades the hits of all paths that are still on their way: calls each_hit. `depth` bounces lie behind them.
@@ -65,6 +67,21 @@ protected:
     /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`. Rays of one `group`,
     /// such as those towards one light, are traced together.
     void connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept;
+
+    /// Where a ray of a path has arrived.
+    SurfacePoint arrive(uint32_t id, const Ray& ray, const Hit& hit) noexcept {
+        SurfacePoint out = surface_at(shading_, ray, hit);
+        if (shading_.uses_footprints()) {
+            RayCone& cone = paths_[id].cone;
+            cone = cone.after(hit.t);
+            out.footprint = footprint_of(cone, out);
+        }
+        return out;
+    }
+    /// The path turns at `point`.
+    void turn(uint32_t id, const SurfacePoint& point, const BsdfSample& next) noexcept {
+        if (shading_.uses_footprints()) paths_[id].cone = bounced(paths_[id].cone, shading_, point, next);
+    }
 
     /// A point where light is gathered.
     struct Vertex {

@@ -49,9 +49,10 @@ private:
         hash_.value(uint64_t(i.data.size()));
         hash_.bytes(i.data.data(), i.data.size());
     }
+    void put(const VertexColorTexture&) {}
     void put(const ConstantTexture& t) { put(t.value); }
     void put(const ImageTexture& t) {
-        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.scale, t.offset, t.rotation);
+        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.mip_map, t.scale, t.offset, t.rotation);
     }
     void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset, t.rotation); }
     void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided, m.roughness); }
@@ -77,6 +78,7 @@ private:
     void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const BumpMap& m) { put(m.texture, m.scale); }
     void put(const Relief& r) { put(r.material, r.map); }
+    void put(const MixMaterial& m) { put(m.first, m.second, m.weight); }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
     void raw(const std::vector<T>& values) {
@@ -88,6 +90,7 @@ private:
         raw(m.normals);
         raw(m.uvs);
         raw(m.indices);
+        raw(m.colors);
     }
     void put(const Sphere& s) { put(s.center, s.radius); }
     void put(const Rectangle& r) { put(r.center, r.half_u, r.half_v); }

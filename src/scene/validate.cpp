@@ -32,6 +32,7 @@ public:
         each("camera", s_.cameras, s_.names.cameras);
         light_uniqueness();
         relief_uniqueness();
+        mixes_end();
     }
 
 private:
@@ -75,6 +76,7 @@ private:
         require(i.data.size() == uint64_t(i.width) * i.height * i.channels * kSize[size_t(i.format)],
                 "the image's data does not have the size that its header says");
     }
+    void check(const VertexColorTexture&) const {}
     void check(const ConstantTexture& t) const { color(t.value, "a colour must be finite and not negative"); }
     void check(const ImageTexture& t) const {
         refers(t.image, s_.images, "image");
@@ -155,6 +157,11 @@ private:
         require(m.specular_ior >= 0.1f && m.specular_ior <= 10, "specular_ior must be between 0.1 and 10");
         require(m.coat_ior >= 1.01f && m.coat_ior <= 3, "coat_ior must be between 1.01 and 3");
     }
+    void check(const MixMaterial& m) const {
+        unit(m.weight, "the weight must be between 0 and 1");
+        refers(m.first, s_.materials, "material");
+        refers(m.second, s_.materials, "material");
+    }
     void check(const ConductorMaterial& m) const {
         check(m.reflectance);
         check(m.roughness);
@@ -173,6 +180,8 @@ private:
     }
     void check(const BumpMap& m) const {
         linear(m.texture);
+        require(!std::holds_alternative<VertexColorTexture>(s_.textures[index(m.texture)]),
+                "heights must come from an image or a pattern");
         require(m.scale >= -1e6f && m.scale <= 1e6f, "the scale of heights must be between -1e6 and 1e6");
     }
     void check(const Relief& r) const {
@@ -187,6 +196,9 @@ private:
         require(m.normals.empty() || m.normals.size() == m.positions.size(),
                 "there must be one normal per position, or none");
         require(m.uvs.empty() || m.uvs.size() == m.positions.size(), "there must be one uv per position, or none");
+        require(m.colors.empty() || m.colors.size() == m.positions.size(),
+                "there must be one colour per position, or none");
+        for (const Rgb& c : m.colors) color(c, "the colours of vertices must be finite and not negative");
         const size_t count = m.positions.size();
         require(std::all_of(m.indices.begin(), m.indices.end(), [&](uint32_t i) { return i < count; }),
                 "an index refers to a vertex that does not exist");
@@ -272,6 +284,24 @@ private:
     void check(const FisheyeCamera& c) const {
         pose(c);
         require(c.fov > 0 && c.fov <= 360, "the field of view must be in (0, 360] degrees");
+    }
+
+    /// Ids are in range by now.
+    void mixes_end() const {
+        std::vector<uint32_t> parts(s_.materials.size(), 1);
+        for (uint32_t i = 0; i < parts.size(); ++i) {
+            const auto* mix = std::get_if<MixMaterial>(&s_.materials[i]);
+            if (!mix) continue;
+            if (index(mix->first) >= i || index(mix->second) >= i)
+                throw Fault{fmt::format("material {} mixes one that does not come before it", i)};
+            parts[i] = parts[index(mix->first)] + parts[index(mix->second)];
+            if (parts[i] > kMaxMixed)
+                throw Fault{fmt::format("material {} is a mix of {}, expected at most {}", i, parts[i], kMaxMixed)};
+        }
+        for (const Relief& relief : s_.reliefs)
+            if (std::holds_alternative<MixMaterial>(s_.materials[index(relief.material)]))
+                throw Fault{
+                    fmt::format("material {} is a mix: relief belongs to what is mixed", index(relief.material))};
     }
 
     void relief_uniqueness() const {

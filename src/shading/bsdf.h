@@ -3,6 +3,7 @@
 // wo and wi are unit world vectors that point away from the surface. Every pdf is per solid angle.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -70,13 +71,28 @@ struct OpenPbrBsdf {
     const OpenPbrTables* tables = nullptr;
 };
 
+using PlainLobe = std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf,
+                               ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf>;
+
+/// Parts whose weights, all more than 0, sum to 1.
+struct MixBsdf {
+    struct Part {
+        PlainLobe lobe;
+        Frame frame;          ///< as in Bsdf
+        bool folded = false;  ///< as in Bsdf
+        float weight = 0;
+    };
+    std::array<Part, kMaxMixed> parts;
+    uint32_t count = 0;
+};
+
 using Lobe = std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf,
-                          ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf>;
+                          ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf, MixBsdf>;
 
 struct Bsdf {
     Lobe lobe;
     Vec3 ng;
-    Frame frame;  ///< z is the shading normal, x the direction of u where the lobe has one
+    Frame frame;  ///< z is the shading normal (of a mix the mean), x the direction of u where the lobe has one
     /// The normal comes from a map: what the lobe sends through the surface by mistake is mirrored at it.
     bool folded = false;
 };

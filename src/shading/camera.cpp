@@ -144,6 +144,26 @@ Vec3d CameraSampler::fisheye_direction(Vec2 film) const noexcept {
     return forward_ * math::cos(theta) + right_ * (s * x) + up_ * (s * y);
 }
 
+RayCone CameraSampler::cone(Vec2 film) const noexcept {
+    const double pi = std::numbers::pi;
+    switch (kind_) {
+        case Kind::perspective: {
+            // A pixel of the plane at distance 1 has the solid angle of its area over the cube of its distance.
+            const double distance = length(corner_ + dx_ * film.x + dy_ * film.y);
+            return {0, static_cast<float>(length(dy_) / (distance * std::sqrt(distance)))};
+        }
+        case Kind::orthographic:
+            return {static_cast<float>(length(dy_)), 0};
+        case Kind::panorama: {
+            const double sine = math::sin(pi * (film.y / height_));
+            return {0, static_cast<float>(pi * std::sqrt(2.0 / height_ / width_ * max_of(sine, 0.0)))};
+        }
+        case Kind::fisheye:
+            return {0, static_cast<float>(half_angle_ / (min_of(width_, height_) / 2.0))};
+    }
+    return {};
+}
+
 Ray CameraSampler::generate(Vec2 film, Vec2 lens) const noexcept {
     Ray ray;
     ray.o = origin_;

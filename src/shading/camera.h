@@ -3,6 +3,7 @@
 
 #include "math/ray.h"
 #include "math/vector.h"
+#include "shading/ray_cone.h"
 #include "steradian/result.h"
 #include "steradian/scene.h"
 
@@ -22,6 +23,9 @@ public:
     /// Through a film position in pixels from the top left corner of the full picture, and a place on the lens by two
     /// uniform numbers. The direction has unit length.
     Ray generate(Vec2 film, Vec2 lens = {}) const noexcept;
+
+    /// Of the ray that generate() makes: as large as a pixel. Of a panorama or a fisheye roughly so.
+    RayCone cone(Vec2 film) const noexcept;
 
     /// Metres along the camera's own -Z; from the camera itself where the picture is not flat (panorama, fisheye).
     double depth_of(Vec3 p) const noexcept {

@@ -20,8 +20,8 @@ Vec3d by_map(const NormalMap& map, Rgb texel, const SurfaceDerivatives& d, Vec3d
     return x * r + up * (mirrored != map.flip_y ? -g : g) + n * (2.0 * texel.b - 1);
 }
 
-/// n - ∇h, with the gradient on the surface by the dual of dp/du and dp/dv (Mikkelsen 2010, "Bump Mapping Unparametrized
-/// Surfaces on the GPU", equation 7, for derivatives that are known).
+/// n - ∇h, with the gradient on the surface by the dual of dp/du and dp/dv (Mikkelsen 2010, "Bump Mapping
+/// Unparametrized Surfaces on the GPU", equation 7, for derivatives that are known).
 Vec3d by_heights(Vec2 slope, double scale, const SurfaceDerivatives& d, Vec3d n) {
     const double across = dot(n, cross(d.du, d.dv));
     const Vec3d gradient = cross(d.dv, n) * slope.x + cross(n, d.du) * slope.y;
@@ -57,12 +57,12 @@ ReliefNormal relief_normal(const ShadingScene& scene, const SurfacePoint& point,
     const Vec3d own = point.ns;
     Vec3d n;
     if (const auto* map = std::get_if<NormalMap>(&relief.map)) {
-        const Rgb texel = eval_texture(scene.scene, map->texture, point.uv);
+        const Rgb texel = eval_texture(scene, map->texture, point);
         if (map->strength == 0 || (texel.r == 0.5f && texel.g == 0.5f)) return flat;
         n = by_map(*map, texel, d, own);
     } else {
         const auto& bump = std::get<BumpMap>(relief.map);
-        const Vec2 slope = texture_slope(scene.scene, bump.texture, point.uv);
+        const Vec2 slope = texture_slope(scene, bump.texture, point);
         if (bump.scale == 0 || slope == Vec2{0, 0}) return flat;
         n = by_heights(slope, bump.scale, d, own);
     }

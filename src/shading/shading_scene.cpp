@@ -10,6 +10,7 @@
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/sphere_emitter.h"
 #include "shading/microfacet_energy.h"
+#include "shading/mip_map.h"
 #include "shading/open_pbr_tables.h"
 #include "shading/surface.h"
 #include "shading/surface_error.h"
@@ -239,6 +240,22 @@ bool adds_energy(const RawImage& image) {
     return false;
 }
 
+/// Textures of one image, read alike, share one.
+std::vector<std::shared_ptr<const MipMap>> make_mip_maps(const Scene& scene) {
+    std::map<std::pair<ImageId, ColorSpace>, std::shared_ptr<const MipMap>> known;
+    std::vector<std::shared_ptr<const MipMap>> out(scene.textures.size());
+    for (size_t i = 0; i < out.size(); ++i) {
+        const auto* texture = std::get_if<ImageTexture>(&scene.textures[i]);
+        if (!texture || !texture->mip_map || !texture->bilinear) continue;
+        auto& map = known[{texture->image, texture->color_space}];
+        const RawImage& image = scene.images[index(texture->image)];
+        if (!map) map = std::make_shared<const MipMap>(MipMap::make(image, texture->color_space));
+        out[i] = map;
+    }
+    if (known.empty()) out.clear();
+    return out;
+}
+
 void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
     std::vector<bool> counted(scene.images.size(), false);
     for (const Texture& texture : scene.textures) {
@@ -274,6 +291,7 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
         }
         for (uint32_t i = 0; i < out.scene.reliefs.size(); ++i)
             out.materials[index(out.scene.reliefs[i].material)].relief = i;
+        out.mip_maps = make_mip_maps(out.scene);
         LightBuilder lights(out, diagnostics);
         for (const Light& light : out.scene.lights) lights.add(light);
         out.light_selection = LightSelection(out);

@@ -16,6 +16,7 @@
 namespace steradian {
 
 struct OpenPbrTables;    // what the layers of such a material reflect, see open_pbr_tables.h
+struct MipMap;           // an image at lower resolutions, see mip_map.h
 class MicrofacetEnergy;  // what rough surfaces lose, see microfacet_energy.h
 class EnvironmentTable;  // the environment's radiance and its sampling distribution, see environment.h
 
@@ -58,6 +59,11 @@ struct ShadingScene {
         uint32_t relief = kNoRelief;  ///< index into scene.reliefs
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
+
+    /// Parallel to scene.textures, empty where a texture has none; no elements at all where none has one.
+    std::vector<std::shared_ptr<const MipMap>> mip_maps;
+    /// Whether anything is looked up by how much of the surface a ray sees.
+    bool uses_footprints() const { return !mip_maps.empty(); }
 
     uint32_t environment_light = kNoLight;
     std::shared_ptr<const EnvironmentTable> environment;

@@ -154,6 +154,7 @@ SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hi
     out.ns = static_cast<Vec3>(side > 0 ? ns : side < 0 ? -ns : ng);
     out.uv = s.uv;
     out.wo = -ray.d;
+    out.hit_uv = {hit.u, hit.v};
     out.instance = hit.instance;
     out.prim = hit.prim;
     return out;

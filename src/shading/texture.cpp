@@ -6,6 +6,8 @@
 
 #include "image/tone.h"
 #include "math/elementary.h"
+#include "shading/mip_map.h"
+#include "shading/shading_scene.h"
 
 namespace steradian {
 namespace {
@@ -140,13 +142,12 @@ Rgb look_up(const Scene&, const CheckerTexture& t, TexturePoint at) {
     return sum - 2 * std::floor(sum / 2) == 0 ? t.even : t.odd;
 }
 
-Rgb look_up(const Scene& scene, const ImageTexture& t, TexturePoint point) {
-    const RawImage& image = scene.images[index(t.image)];
+Rgb look_up(const RawImage& image, ColorSpace space, const ImageTexture& t, TexturePoint point) {
     const Taps x = taps(point.x, image.width, t.wrap_u, t.bilinear);
     const Taps y = taps(point.y, image.height, t.wrap_v, t.bilinear);
     const auto at = [&](int64_t i, int64_t j) {
         if (i < 0 || j < 0) return Rgb{};
-        return texel(image, t.color_space, static_cast<uint32_t>(i), static_cast<uint32_t>(j));
+        return texel(image, space, static_cast<uint32_t>(i), static_cast<uint32_t>(j));
     };
     if (!t.bilinear) return at(x.i0, y.i0);
     const auto wx = static_cast<float>(x.w1), wy = static_cast<float>(y.w1);
@@ -154,18 +155,97 @@ Rgb look_up(const Scene& scene, const ImageTexture& t, TexturePoint point) {
     const Rgb lower = at(x.i0, y.i1) * (1 - wx) + at(x.i1, y.i1) * wx;
     return upper * (1 - wy) + lower * wy;
 }
+Rgb look_up(const Scene& scene, const ImageTexture& t, TexturePoint point) {
+    return look_up(scene.images[index(t.image)], t.color_space, t, point);
+}
 
 Rgb eval_kind(const Scene&, const ConstantTexture& t, Vec2) { return t.value; }
+Rgb eval_kind(const Scene&, const VertexColorTexture&, Vec2) { return {1, 1, 1}; }
 template <class T>
 Rgb eval_kind(const Scene& scene, const T& t, Vec2 uv) {
     return look_up(scene, t, texture_point(t, uv));
 }
 
-/// What counts as one texel, in texture space.
-Vec2 texel_size(const Scene&, const CheckerTexture&) { return {1 / 256.0f, 1 / 256.0f}; }
-Vec2 texel_size(const Scene& scene, const ImageTexture& t) {
-    const RawImage& image = scene.images[index(t.image)];
-    return {1 / static_cast<float>(image.width), 1 / static_cast<float>(image.height)};
+/// An image and its MIP map at a level of detail, which need not be whole: 0 is the image itself.
+struct Filtered {
+    const ImageTexture& texture;
+    const RawImage& image;
+    const MipMap* map = nullptr;
+    double level = 0;
+
+    Rgb at(TexturePoint point) const {
+        const double whole = std::floor(level);
+        const auto first = static_cast<size_t>(whole);
+        const auto weight = static_cast<float>(level - whole);
+        const Rgb fine = of_level(first, point);
+        return weight > 0 ? fine * (1 - weight) + of_level(first + 1, point) * weight : fine;
+    }
+
+private:
+    Rgb of_level(size_t i, TexturePoint point) const {
+        return i == 0 ? look_up(image, texture.color_space, texture, point)
+                      : look_up(map->levels[i - 1], ColorSpace::linear, texture, point);
+    }
+};
+
+/// λ such that a texel of that level is as wide as the footprint, as an area (Akenine-Möller et al. 2021, equation 4,
+/// with the derivatives of the surface for the triangle's areas).
+Filtered filtered(const ShadingScene& scene, TextureId id, const ImageTexture& t, const SurfacePoint& point) {
+    Filtered out{t, scene.scene.images[index(t.image)]};
+    if (!t.mip_map || !t.bilinear || !(point.footprint > 0) || scene.mip_maps.empty()) return out;
+    out.map = scene.mip_maps[index(id)].get();
+    if (!out.map || out.map->levels.empty()) return out;
+    const SurfaceDerivatives d = derivatives_at(scene, point);
+    const TextureMatrix m = texture_matrix(t);
+    const double area = length(cross(d.du, d.dv)), uv_area = d.determinant * d.determinant;
+    const double texels = double(out.image.width) * out.image.height * std::fabs(m.xu * m.yv - m.xv * m.yu);
+    const double footprint = point.footprint, across = texels * uv_area / area * footprint * footprint;
+    if (across > 1) out.level = min_of(math::log2(across) / 2, static_cast<double>(out.map->levels.size()));
+    return out;
+}
+
+Rgb eval_at(const ShadingScene&, TextureId, const ConstantTexture& t, const SurfacePoint&) { return t.value; }
+Rgb eval_at(const ShadingScene& scene, TextureId, const CheckerTexture& t, const SurfacePoint& point) {
+    return eval_kind(scene.scene, t, point.uv);
+}
+Rgb eval_at(const ShadingScene& scene, TextureId id, const ImageTexture& t, const SurfacePoint& point) {
+    return filtered(scene, id, t, point).at(texture_point(t, point.uv));
+}
+
+Rgb eval_at(const ShadingScene& scene, TextureId, const VertexColorTexture&, const SurfacePoint& point) {
+    const Scene& s = scene.scene;
+    const auto* id = std::get_if<MeshId>(&s.shapes[index(s.instances[point.instance].shape)]);
+    if (!id || s.meshes[index(*id)].colors.empty()) return {1, 1, 1};
+    const Mesh& mesh = s.meshes[index(*id)];
+    const uint32_t* i = mesh.indices.data() + size_t(3) * point.prim;
+    const float b1 = point.hit_uv.x, b2 = point.hit_uv.y, b0 = max_of(1 - b1 - b2, 0.0f);
+    return mesh.colors[i[0]] * b0 + mesh.colors[i[1]] * b1 + mesh.colors[i[2]] * b2;
+}
+
+/// By differences over `step`, in texture space; `height` at a place there.
+template <class T, class Height>
+Vec2 slope_of(const T& t, Vec2 uv, double step_x, double step_y, const Height& height) {
+    const TexturePoint at = texture_point(t, uv);
+    const double ds =
+        (height(TexturePoint{at.x + step_x / 2, at.y}) - height(TexturePoint{at.x - step_x / 2, at.y})) / step_x;
+    const double dt =
+        (height(TexturePoint{at.x, at.y + step_y / 2}) - height(TexturePoint{at.x, at.y - step_y / 2})) / step_y;
+    const TextureMatrix m = texture_matrix(t);
+    return {static_cast<float>(ds * m.xu + dt * m.yu), static_cast<float>(ds * m.xv + dt * m.yv)};
+}
+
+Vec2 slope_at(const ShadingScene&, TextureId, const ConstantTexture&, const SurfacePoint&) { return {0, 0}; }
+/// Nobody has asked for heights of vertices: validate() refuses them.
+Vec2 slope_at(const ShadingScene&, TextureId, const VertexColorTexture&, const SurfacePoint&) { return {0, 0}; }
+Vec2 slope_at(const ShadingScene& scene, TextureId, const CheckerTexture& t, const SurfacePoint& point) {
+    return slope_of(t, point.uv, 1 / 256.0, 1 / 256.0,
+                    [&](TexturePoint at) { return double{look_up(scene.scene, t, at).r}; });
+}
+Vec2 slope_at(const ShadingScene& scene, TextureId id, const ImageTexture& t, const SurfacePoint& point) {
+    const Filtered image = filtered(scene, id, t, point);
+    const double texel = image.level > 0 ? math::pow(2.0, image.level) : 1;
+    return slope_of(t, point.uv, texel / image.image.width, texel / image.image.height,
+                    [&](TexturePoint at) { return double{image.at(at).r}; });
 }
 
 }  // namespace
@@ -197,24 +277,12 @@ Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept {
     return std::visit([&](const auto& t) { return eval_kind(scene, t, uv); }, scene.textures[index(id)]);
 }
 
-Vec2 texture_slope(const Scene& scene, TextureId id, Vec2 uv) noexcept {
-    return std::visit(
-        [&](const auto& t) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(t)>, ConstantTexture>) {
-                return Vec2{0, 0};
-            } else {
-                const Vec2 texel = texel_size(scene, t);
-                const TexturePoint at = texture_point(t, uv);
-                const auto height = [&](double x, double y) {
-                    return static_cast<double>(look_up(scene, t, {at.x + x * texel.x, at.y + y * texel.y}).r);
-                };
-                const double ds = (height(0.5, 0) - height(-0.5, 0)) / texel.x;
-                const double dt = (height(0, 0.5) - height(0, -0.5)) / texel.y;
-                const TextureMatrix m = texture_matrix(t);
-                return Vec2{static_cast<float>(ds * m.xu + dt * m.yu), static_cast<float>(ds * m.xv + dt * m.yv)};
-            }
-        },
-        scene.textures[index(id)]);
+Rgb eval_texture(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept {
+    return std::visit([&](const auto& t) { return eval_at(scene, id, t, point); }, scene.scene.textures[index(id)]);
+}
+
+Vec2 texture_slope(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept {
+    return std::visit([&](const auto& t) { return slope_at(scene, id, t, point); }, scene.scene.textures[index(id)]);
 }
 
 }  // namespace steradian

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "math/vector.h"
+#include "shading/surface.h"
 #include "steradian/scene.h"
 
 namespace steradian {
@@ -15,9 +16,12 @@ uint64_t count_bad_texels(const RawImage& image, bool negative_too) noexcept;
 
 /// v runs downwards from the top row.
 Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
+/// At a point of a surface: also by its footprint, and what belongs to the surface itself.
+Rgb eval_texture(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept;
 
-/// How the first channel changes with u and v, by differences over one texel of an image (over 1/256 of the unit of
+/// How the first channel changes with u and v, by differences over one texel of an image, or of
+/// the level of its MIP map (over 1/256 of the unit of
 /// other textures): continuous for images that are looked up bilinearly.
-Vec2 texture_slope(const Scene& scene, TextureId id, Vec2 uv) noexcept;
+Vec2 texture_slope(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept;
 
 }  // namespace steradian

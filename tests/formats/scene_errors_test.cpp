@@ -166,8 +166,8 @@ TEST(SceneErrors, Textures) {
             "'wrap' cannot be \"tile\"", "repeat");
     refused("\"textures\": {\"t\": {\"type\": \"image\", \"path\": \"x.png\", \"wrap\": §[\"clamp\"]}}",
             "'wrap' must be an array of 2");
-    refused("\"textures\": {\"t\": {\"type\": \"image\", \"path\": \"x.png\", \"filter\": §\"trilinear\"}}",
-            "'filter' cannot be \"trilinear\"", "bilinear");
+    refused("\"textures\": {\"t\": {\"type\": \"image\", \"path\": \"x.png\", \"filter\": §\"trilinera\"}}",
+            "'filter' cannot be \"trilinera\"", "trilinear");
     refused("\"textures\": {\"t\": {\"type\": \"image\", \"path\": \"x.png\", \"color_space\": §\"sRGB \"}}",
             "'color_space' cannot be", "srgb");
     refused("\"textures\": {\"t\": {\"type\": \"image\", \"path\": \"x.png\", \"scale\": §[1, 2, 3]}}",
@@ -192,6 +192,24 @@ TEST(SceneErrors, Relief) {
     material("\"bump_map\": §\"n\"", "'bump_map' must be an object");
     material("\"normal_map\": \"n\", §\"bump_map\": {\"texture\": \"n\"}",
              "either 'normal_map' or 'bump_map', not both");
+}
+
+TEST(SceneErrors, Mixes) {
+    const auto mix = [](std::string_view members, std::string_view message, std::string_view hint = {}) {
+        refused(
+            "\"materials\": {\"a\": {\"type\": \"mirror\"}, \"two\": {\"type\": \"mix\", \"materials\": [\"a\", "
+            "\"a\"]}, "
+            "\"m\": {\"type\": \"mix\", " +
+                std::string(members) + "}}",
+            message, hint);
+    };
+    mix("\"materials\": §[\"a\"]", "'materials' must be an array of 2");
+    mix("\"materials\": [\"a\", §\"b\"]", "there is no material called 'b'", "a");
+    mix("\"materials\": [\"a\", §\"m\"]", "there is no material called 'm'", "a");
+    mix("\"materials\": [\"a\", \"a\"], \"weight\": §2", "'weight' must be from 0 to 1, got 2");
+    mix("\"materials\": [\"a\", \"a\"], §\"normal_map\": \"n\"", "unknown key 'normal_map'", "");
+    mix("\"materials\": §[\"two\", {\"type\": \"mix\", \"materials\": [\"two\", \"a\"]}]",
+        "a mix of 5 materials, expected at most 4");
 }
 
 TEST(SceneErrors, Materials) {

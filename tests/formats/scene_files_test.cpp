@@ -101,6 +101,26 @@ TEST_F(SceneFiles, ALightOnAModelLightsEachPartOnce) {
         "'two' is a light already");
 }
 
+/// Integers are sRGB unless the object says otherwise; a model that has colours and no material shows them.
+TEST_F(SceneFiles, ColoursOfVerticesAreReadInTheirColourSpace) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        "0 0 0 0 128 255\n1 0 0 0 128 255\n0 1 0 0 128 255\n3 0 1 2\n";
+    spit(folder_.path() / "painted.ply", text);
+    const LoadedScene loaded = load(scene_with(R"("objects": [{"type": "mesh", "path": "painted.ply"},
+        {"type": "mesh", "path": "painted.ply", "color_space": "linear"}])"));
+    ASSERT_EQ(loaded.scene.meshes.size(), 2u);
+    EXPECT_NEAR(loaded.scene.meshes[0].colors.at(0).g, 0.2158605f, 1e-6);
+    EXPECT_EQ(loaded.scene.meshes[1].colors.at(0).g, 128 / 255.0f);
+    for (const Instance& instance : loaded.scene.instances) {
+        const auto& material = std::get<DiffuseMaterial>(loaded.scene.materials[index(instance.material)]);
+        EXPECT_TRUE(material.two_sided);
+        EXPECT_TRUE(std::holds_alternative<VertexColorTexture>(loaded.scene.textures[index(material.reflectance)]));
+    }
+}
+
 /// Normals and heights are not colours.
 TEST_F(SceneFiles, ImagesOfNumbersAreLinear) {
     const LoadedScene loaded = load(scene_with(R"("materials": {

@@ -431,6 +431,27 @@ TEST(NativeScene, NormalAndBumpMaps) {
     EXPECT_TRUE(std::holds_alternative<CheckerTexture>(scene.textures[index(bump.texture)]));
 }
 
+TEST(NativeScene, MixesAndColoursOfVertices) {
+    const LoadedScene loaded = load_good(scene_with(R"("textures": {"c": {"type": "vertex_color"}}, "materials": {
+            "a": {"type": "diffuse", "reflectance": "c"}, "b": {"type": "mirror"},
+            "m": {"type": "mix", "materials": ["b", "a"]},
+            "n": {"type": "mix", "materials": ["m", {"type": "glass"}], "weight": "c"}},
+        "objects": [{"type": "mesh", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]],
+            "colors": [[1, 0, 0], [0, 0.5, 0], [0, 0, 2]], "material": "n"}])"));
+    const Scene& s = loaded.scene;
+    EXPECT_TRUE(std::holds_alternative<VertexColorTexture>(s.textures.at(0)));
+    const auto& m = std::get<MixMaterial>(s.materials.at(2));
+    EXPECT_EQ(index(m.first), 1u);
+    EXPECT_EQ(index(m.second), 0u);
+    EXPECT_EQ(m.weight.value, 0.5f);
+    const auto& n = std::get<MixMaterial>(s.materials.at(4));
+    EXPECT_EQ(index(n.first), 2u);
+    EXPECT_EQ(index(n.second), 3u);
+    EXPECT_EQ(n.weight.value, 1);
+    EXPECT_EQ(n.weight.texture, TextureId{0});
+    EXPECT_EQ(s.meshes.at(0).colors, (std::vector<Rgb>{{1, 0, 0}, {0, 0.5f, 0}, {0, 0, 2}}));
+}
+
 TEST(NativeScene, TexturesAreTurned) {
     const LoadedScene loaded = load_good(scene_with(
         R"("textures": {"a": {"type": "checkerboard", "rotation": 30, "scale": 2, "offset": [1, 2]}, "b": {"type": "checkerboard"}})"));

@@ -33,7 +33,7 @@ const std::map<std::string, Loaded> kLoaded{
     {"cornell_box_multimaterial.obj", {4, 36, 4, ""}},
     {"cube.obj", {3, 12, 3, ""}},
     {"cube-vertex-w-component.obj", {3, 12, 3, ""}},
-    {"cube-vertexcol.obj", {3, 12, 3, "vertex colours"}},
+    {"cube-vertexcol.obj", {3, 12, 3, ""}},
     {"issue-138.obj", {2, 12, 2, ""}},
     {"issue-161-inconsistent-f.obj", {1, 12, 0, "'cube' is not defined"}},
     {"issue-162-smoothing-group.obj", {2, 12, 2, ""}},

@@ -228,19 +228,44 @@ TEST(Obj, AContinuationMayBeginALine) {
     EXPECT_EQ(corner_positions(mesh), (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
-TEST(Obj, VertexColoursAndOtherThingsAreCounted) {
+/// Also after a weight; vertices without one are white. Faces have their corners' colours whatever else tells them
+/// apart.
+TEST(Obj, VerticesHaveColours) {
+    const Mesh mesh =
+        only_mesh(read_obj("v 0 0 0 1 0.5 0.25\nv 1 0 0\nv 0 1 0 1 0.1 0.2 0.3\nv 0 0 1 0 0 -1\n"
+                           "vt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 3/1 4/1\n"));
+    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+        const Vec3 p = mesh.positions[i];
+        const Rgb expected = p.x == 1   ? Rgb{1, 1, 1}
+                             : p.y == 1 ? Rgb{0.1f, 0.2f, 0.3f}
+                             : p.z == 1 ? Rgb{0, 0, 0}
+                                        : Rgb{1, 0.5f, 0.25f};
+        EXPECT_EQ(mesh.colors[i], expected) << i;
+    }
+    EXPECT_TRUE(only_mesh(read_obj("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n")).colors.empty());
+    // In small chunks as in one.
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0 0.5 0.6 0.7\n";
+    for (int i = 0; i < 50; ++i) text += "# a line to make the chunks fall apart\n";
+    text += "v 0 0 2\nv 0 0 1 0.2 0.3 0.4\nf 1 3 5\nf 1 2 4\n";
+    for (const size_t chunk : {size_t(20), size_t(300), size_t(100000)}) {
+        const std::vector<Rgb> colors = obj::read_records(text, chunk).colors;
+        EXPECT_EQ(colors, (std::vector<Rgb>{{1, 1, 1}, {1, 1, 1}, {0.5f, 0.6f, 0.7f}, {1, 1, 1}, {0.2f, 0.3f, 0.4f}}));
+    }
+}
+
+TEST(Obj, WhatIsNotUsedIsCounted) {
     const MeshFile file =
         expect_ok(read_obj(triangle_and("v 0 0 0 1 0 0\nv 0 0 0 1 0 0\np 1 2\nl 1 2 3\nl 1 2\ncurv 0 1 1 2\nvp 1\nfoo "
                                         "3\nbar\nfoo\nlod 3\nbevel on\ns x\nf 1 2 3\n")));
     const Diagnostics& d = file.diagnostics;
-    EXPECT_EQ(warning_count(d, "colours"), 2u);
     EXPECT_EQ(warning_count(d, "points"), 1u);
     EXPECT_EQ(warning_count(d, "lines (l)"), 2u);
     EXPECT_EQ(warning_count(d, "free-form"), 2u);
     EXPECT_EQ(warning_count(d, "'foo'"), 2u);
     EXPECT_EQ(warning_count(d, "'bar'"), 1u);
     EXPECT_EQ(warning_count(d, "smoothing group"), 1u);
-    EXPECT_EQ(d.warnings().size(), 7u) << all_warnings(d);
+    EXPECT_EQ(d.warnings().size(), 6u) << all_warnings(d);
     for (const Warning& w : d.warnings()) EXPECT_GT(w.where.line, 3u);
 }
 

@@ -119,6 +119,29 @@ TEST(Ply, EveryTypeInEveryEncoding) {
     }
 }
 
+/// Integers over their largest value, meant as sRGB; floating-point numbers as they are, meant as linear.
+TEST(Ply, VerticesHaveColours) {
+    const auto file = [](const std::string& type, const std::string& color) {
+        return read_ply(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "property " +
+            type + " red\nproperty " + type + " green\nproperty " + type +
+            " blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            "1 0 0 " +
+            color + " 9\n0 1 0 " + color + " 9\n0 0 1 " + color + " 9\n3 0 1 2\n");
+    };
+    const MeshFile bytes = expect_ok(file("uchar", "0 51 255")), words = expect_ok(file("ushort", "0 13107 65535")),
+                   floats = expect_ok(file("float", "0 0.2 1")), bad = expect_ok(file("double", "-1 nan 2"));
+    for (const MeshFile* f : {&bytes, &words, &floats}) {
+        EXPECT_EQ(f->parts.at(0).mesh.colors, (std::vector<Rgb>(3, Rgb{0, 0.2f, 1})));
+        EXPECT_TRUE(f->diagnostics.empty());
+    }
+    EXPECT_EQ(bytes.color_space, ColorSpace::srgb);
+    EXPECT_EQ(words.color_space, ColorSpace::srgb);
+    EXPECT_EQ(floats.color_space, ColorSpace::linear);
+    EXPECT_EQ(bad.parts.at(0).mesh.colors, (std::vector<Rgb>(3, Rgb{0, 0, 2})));
+}
+
 TEST(Ply, NegativeAndLargeValues) {
     for (const bool big : {false, true}) {
         std::string data =

@@ -161,8 +161,7 @@ TEST(ReliefPictures, NoLightFromBehindPassesThroughASheet) {
         add_normal_map(s, materials[i], 89);
         test::place(s, Rectangle{{float(i) - 1, 0, 0}, {0.5f, 0, 0}, {0, 5, 0}}, materials[i]);
     }
-    const InstanceId lamp =
-        test::place(s, Rectangle{{0, 0, -1}, {3, 0, 0}, {0, 3, 0}}, test::diffuse(s, {0, 0, 0}));
+    const InstanceId lamp = test::place(s, Rectangle{{0, 0, -1}, {3, 0, 0}, {0, 3, 0}}, test::diffuse(s, {0, 0, 0}));
     s.lights = {AreaLight{lamp, {5, 5, 5}, false, 1}, PointLight{{0, 0, -0.5f}, {9, 9, 9}},
                 DirectionalLight{{0.3f, 0.1f, 1}, {1, 1, 1}}};
     s.cameras = {OrthographicCamera{{0.5f, 0.3f, 3}, {0, 0, 0}, {0, 1, 0}, 2.2f}};

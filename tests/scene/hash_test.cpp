@@ -15,6 +15,7 @@ Scene full_scene() {
     add<TextureId>(s.textures, Texture(ConstantTexture{}));
     add<TextureId>(s.textures, Texture(ImageTexture{}));
     add<TextureId>(s.textures, Texture(CheckerTexture{}));
+    add<TextureId>(s.textures, Texture(VertexColorTexture{}));
     add<MaterialId>(s.materials, Material(DiffuseMaterial{}));
     add<MaterialId>(s.materials, Material(RefractionMaterial{}));
     add<MaterialId>(s.materials, Material(GlassMaterial{}));
@@ -24,6 +25,7 @@ Scene full_scene() {
     add<MaterialId>(s.materials, Material(ThinGlassMaterial{}));
     add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{}));
     add<MaterialId>(s.materials, Material(OpenPbrMaterial{}));
+    add<MaterialId>(s.materials, Material(MixMaterial{}));
     s.reliefs = {{MaterialId{0}, NormalMap{}}, {MaterialId{1}, BumpMap{}}};
     s.meshes.push_back(
         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 0}, {1, 0}, {0, 1}}, {0, 1, 2}});
@@ -106,6 +108,16 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<BumpMap>(s.reliefs[1].map).texture = TextureId{1}; },
         [](Scene& s) { std::get<BumpMap>(s.reliefs[1].map).scale = 2; },
         [](Scene& s) { s.reliefs.pop_back(); },
+        [](Scene& s) { std::get<MixMaterial>(s.materials[9]).first = MaterialId{1}; },
+        [](Scene& s) { std::get<MixMaterial>(s.materials[9]).second = MaterialId{1}; },
+        [](Scene& s) { std::get<MixMaterial>(s.materials[9]).weight.value = 0.25f; },
+        [](Scene& s) { s.textures[3] = ConstantTexture{}; },
+        [](Scene& s) {
+            s.meshes[0].colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).mip_map = true; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).rotation = 1; },
+        [](Scene& s) { std::get<CheckerTexture>(s.textures[2]).rotation = 1; },
         [](Scene& s) { s.meshes[0].positions[2].z = 1; },
         [](Scene& s) { s.meshes[0].normals.clear(); },
         [](Scene& s) { s.meshes[0].uvs[1].x = 0.5f; },

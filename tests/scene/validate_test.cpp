@@ -75,6 +75,31 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.reliefs = {{MaterialId{0}, BumpMap{TextureId{0}, 2e6f}}};
               }},
+        Fault{"material 1 mixes one that does not come before it",
+              [](Scene& s) {
+                  s.materials.push_back(MixMaterial{MaterialId{0}, MaterialId{1}});
+              }},
+        Fault{"refers to material 9",
+              [](Scene& s) {
+                  s.materials.push_back(MixMaterial{MaterialId{0}, MaterialId{9}});
+              }},
+        Fault{"material 3 is a mix of 8, expected at most 4",
+              [](Scene& s) {
+                  for (uint32_t i = 0; i < 3; ++i) s.materials.push_back(MixMaterial{MaterialId{i}, MaterialId{i}});
+              }},
+        Fault{"relief belongs to what is mixed",
+              [](Scene& s) {
+                  s.materials.push_back(MixMaterial{});
+                  s.reliefs = {{MaterialId{1}, NormalMap{}}};
+              }},
+        Fault{"one colour per position",
+              [](Scene& s) {
+                  s.meshes[0].colors = {{1, 1, 1}};
+              }},
+        Fault{"the colours of vertices",
+              [](Scene& s) {
+                  s.meshes[0].colors = {{1, 1, 1}, {1, -1, 1}, {1, 1, 1}};
+              }},
         Fault{"has two reliefs",
               [](Scene& s) {
                   s.reliefs = {{MaterialId{0}, NormalMap{}}, {MaterialId{0}, BumpMap{}}};

@@ -1,6 +1,8 @@
 #include "shading/material_cases.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "shading/world.h"
 
@@ -114,6 +116,27 @@ void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     add_case("white textured", m, true, 0.09f);
 }
 
+/// Of cases that are there already, whose numbers are those of their materials; the last one mixes a mix.
+void add_mixes(std::vector<MaterialCase>& out, TextureId level) {
+    const auto number = [&](const std::string& name) {
+        for (size_t i = 0; i < out.size(); ++i)
+            if (out[i].name == name) return MaterialId(static_cast<uint32_t>(i));
+        throw std::runtime_error("no case is called " + name);
+    };
+    const auto mix = [&](const std::string& a, const std::string& b, FloatInput weight) {
+        const MaterialCase &first = out[index(number(a))], &second = out[index(number(b))];
+        MaterialCase c{"mix of " + a + " and " + b, MixMaterial{number(a), number(b), weight},
+                       first.lossless && second.lossless, std::min(first.peak, second.peak)};
+        c.energy_error = std::max(first.energy_error, second.energy_error);
+        c.reciprocal = first.reciprocal && second.reciprocal;
+        out.push_back(c);
+    };
+    mix("diffuse two-sided white", "conductor white alpha 0.6", {0.3f});
+    mix("diffuse", "conductor gold alpha 0.2", {0.8f, level});
+    mix("leaf", "diffuse rough white 1.", {0.5f});
+    mix("mix of leaf and diffuse rough white 1.", "conductor white alpha 0.3", {0.25f});
+}
+
 }  // namespace
 
 MaterialScene::MaterialScene() {
@@ -139,6 +162,8 @@ MaterialScene::MaterialScene() {
     add_textured(cases_, white, level);
     add_glass(cases_);
     add_open_pbr(cases_, level);
+
+    add_mixes(cases_, level);
 
     const ShapeId shape = add<ShapeId>(scene.shapes, Shape{Rectangle{}});
     for (const MaterialCase& c : cases_) {

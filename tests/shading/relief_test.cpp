@@ -148,7 +148,8 @@ std::vector<Placed> placed_shapes() {
                                           {std::string("mirrored"), mirrored}}) {
         const Vec3d eye = transform_point(transform, from);
         const auto aim = [&](Vec3d target) { return transform_point(transform, target); };
-        out.push_back({"rectangle " + name, Rectangle{{}, {1, 0, 0}, {0, 2, 0}}, {}, transform, eye, aim({0.2, -0.3, 0})});
+        out.push_back(
+            {"rectangle " + name, Rectangle{{}, {1, 0, 0}, {0, 2, 0}}, {}, transform, eye, aim({0.2, -0.3, 0})});
         out.push_back({"disk " + name, Disk{}, {}, transform, eye, aim({0.2, -0.3, 0})});
         out.push_back({"sphere " + name, Sphere{{}, 1.5f}, {}, transform, eye, aim({0.2, -0.3, 0})});
         out.push_back({"mesh " + name, MeshId{}, square_mesh(false), transform, eye, aim({0.2, -0.3, 0})});
@@ -161,7 +162,8 @@ std::vector<Placed> placed_shapes() {
 TEST(Relief, DerivativesAreThoseOfThePoint) {
     for (const Placed& placed : placed_shapes()) {
         SCOPED_TRACE(placed.name);
-        const ReliefScene scene(NormalMap{}, ConstantTexture{}, placed.shape, placed.world_from_object, {}, placed.mesh);
+        const ReliefScene scene(NormalMap{}, ConstantTexture{}, placed.shape, placed.world_from_object, {},
+                                placed.mesh);
         const SurfacePoint point = scene.at(placed.from, placed.towards);
         const SurfaceDerivatives d = derivatives_at(scene.shading(), point);
         const Frame3d frame = Frame3d::from_z(point.ng);
@@ -176,7 +178,8 @@ TEST(Relief, DerivativesAreThoseOfThePoint) {
     }
 }
 
-/// Where u and v are perpendicular on the surface, the three numbers of a map are the cosines with u, -v and the normal.
+/// Where u and v are perpendicular on the surface, the three numbers of a map are the cosines with u, -v and the
+/// normal.
 TEST(Relief, NormalMapsFollowTheTextureCoordinates) {
     for (const Placed& placed : placed_shapes()) {
         SCOPED_TRACE(placed.name);

@@ -8,6 +8,8 @@
 
 #include "image/tone.h"
 #include "math/vector.h"
+#include "shading/mip_map.h"
+#include "shading/shading_scene.h"
 
 namespace steradian {
 namespace {
@@ -123,10 +125,17 @@ TEST(Texture, Rotation) {
 
 /// Of the heights themselves between texel centres, turned back into u and v.
 TEST(Texture, Slope) {
+    const auto slope_of = [](const Scene& s, Vec2 uv) {
+        Diagnostics diagnostics;
+        const ShadingScene shading = std::move(make_shading_scene(s, diagnostics)).value();
+        SurfacePoint point;
+        point.uv = uv;
+        return texture_slope(shading, TextureId{0}, point);
+    };
     Scene scene = grey(4, 4, {0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7, 8, 9}, Wrap::clamp, Wrap::clamp);
     auto& t = std::get<ImageTexture>(scene.textures[0]);
     const auto expect_slope = [&](Vec2 uv, float du, float dv) {
-        const Vec2 slope = texture_slope(scene, TextureId{0}, uv);
+        const Vec2 slope = slope_of(scene, uv);
         EXPECT_NEAR(slope.x, du, 1e-4);
         EXPECT_NEAR(slope.y, dv, 1e-4);
     };
@@ -136,8 +145,73 @@ TEST(Texture, Slope) {
     expect_slope({0.25f, 1}, 8, 4);
     t.scale = {1, 1}, t.rotation = 90;
     expect_slope({-0.5f, 0.5f}, -8, 4);  // s = v, t = -u
-    EXPECT_EQ(texture_slope(scene, add<TextureId>(scene.textures, Texture{ConstantTexture{}}), {0.3f, 0.1f}),
-              (Vec2{0, 0}));
+    scene.textures[0] = ConstantTexture{};
+    EXPECT_EQ(slope_of(scene, {0.3f, 0.1f}), (Vec2{0, 0}));
+}
+
+/// Every level has the mean of the image, in linear light, whatever the number of texels.
+TEST(Texture, LevelsOfMipMapsKeepTheMean) {
+    for (const auto& [width, height] : {std::pair{8u, 8u}, {7u, 5u}, {1u, 9u}, {13u, 1u}, {3u, 6u}}) {
+        std::vector<uint8_t> bytes;
+        for (uint32_t i = 0; i < 3 * width * height; ++i) bytes.push_back(static_cast<uint8_t>(i * 89 % 251));
+        const RawImage image = raw(width, height, 3, TexelFormat::u8, bytes);
+        const auto mean = [](const RawImage& level, ColorSpace space) {
+            double sum = 0;
+            for (uint32_t y = 0; y < level.height; ++y)
+                for (uint32_t x = 0; x < level.width; ++x) sum += texel(level, space, x, y).g;
+            return sum / level.width / level.height;
+        };
+        const double expected = mean(image, ColorSpace::srgb);
+        const MipMap map = MipMap::make(image, ColorSpace::srgb);
+        uint64_t size = 0;
+        for (const RawImage& level : map.levels) {
+            EXPECT_NEAR(mean(level, ColorSpace::linear), expected, 1e-3) << level.width << " " << level.height;
+            size += level.data.size();
+        }
+        ASSERT_FALSE(map.levels.empty());
+        EXPECT_EQ(map.levels.back().width * map.levels.back().height, 1u);
+        EXPECT_EQ(MipMap::bytes(image), size);
+    }
+    // Half floats to the nearest: 1/3 is 0x3555, 2^-20 is 16 of the smallest.
+    const MipMap exact = MipMap::make(raw<float>(2, 1, 1, TexelFormat::f32, {1, 2.5f}), ColorSpace::linear);
+    EXPECT_EQ(texel(exact.levels.at(0), ColorSpace::linear, 0, 0).r, 1.75f);
+    const MipMap third = MipMap::make(raw<uint8_t>(2, 1, 1, TexelFormat::u8, {85, 85}), ColorSpace::linear);
+    EXPECT_EQ(third.levels.at(0).format, TexelFormat::f16);
+    EXPECT_NEAR(texel(third.levels.at(0), ColorSpace::linear, 0, 0).r, 1 / 3.0, 1.3e-4);
+}
+
+/// On a square of one metre with an image of 16 x 16 texels a footprint of 1/8 m is two texels: level 1.
+TEST(Texture, TheFootprintChoosesTheLevel) {
+    Scene scene;
+    std::vector<float> values;
+    for (int i = 0; i < 256; ++i) values.push_back(static_cast<float>(i * 37 % 101));
+    scene.images.push_back(raw(16, 16, 1, TexelFormat::f32, values));
+    ImageTexture texture;
+    texture.color_space = ColorSpace::linear;
+    texture.mip_map = true;
+    scene.textures.push_back(texture);
+    scene.shapes.push_back(Rectangle{{}, {0.5f, 0, 0}, {0, 0.5f, 0}});
+    scene.materials.push_back(MirrorMaterial{});
+    scene.instances.push_back({});
+    const Scene plain = scene;
+    Diagnostics diagnostics;
+    const ShadingScene shading = std::move(make_shading_scene(scene, diagnostics)).value();
+    const MipMap& map = *shading.mip_maps.at(0);
+    SurfacePoint point;
+    point.instance = 0, point.prim = 0;
+    point.ng = point.ns = {0, 0, 1};
+    point.uv = {1.5f / 8, 2.5f / 8};
+    const auto read = [&](float footprint) {
+        point.footprint = footprint;
+        return eval_texture(shading, TextureId{0}, point).g;
+    };
+    const float finest = at(plain, point.uv.x, point.uv.y);
+    EXPECT_EQ(read(0), finest);
+    EXPECT_EQ(read(1 / 17.0f), finest);
+    const float one = texel(map.levels[0], ColorSpace::linear, 1, 2).g;
+    EXPECT_NEAR(read(1 / 8.0f), one, 1e-4f);
+    EXPECT_NEAR(read(std::sqrt(0.5f) / 8), (finest + one) / 2, 1e-4f);
+    EXPECT_NEAR(read(100), texel(map.levels.back(), ColorSpace::linear, 0, 0).g, 1e-4f);
 }
 
 TEST(Texture, Checkerboard) {

@@ -140,6 +140,7 @@ private:
             mesh.positions.push_back(position_of(records_, corner));
             if (has_normals_) mesh.normals.push_back(normal);
             if (has_uvs_) mesh.uvs.push_back(uv_of(corner));
+            if (!records_.colors.empty()) mesh.colors.push_back(records_.colors[static_cast<size_t>(corner.position)]);
         }
         return number;
     }

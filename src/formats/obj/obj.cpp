@@ -20,8 +20,6 @@ constexpr size_t kMaxLibraries = 256;
 
 std::string describe(obj::Remark kind, std::string_view word) {
     switch (kind) {
-        case obj::Remark::vertex_color:
-            return "vertex colours are not used";
         case obj::Remark::points:
             return "points (p) are not drawn";
         case obj::Remark::lines:

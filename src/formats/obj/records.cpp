@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "formats/mesh/parse_failure.h"
 #include "formats/obj/lines.h"
+#include "math/vector.h"
 
 namespace steradian::obj {
 namespace {
@@ -56,15 +57,17 @@ bool among(std::span<const std::string_view> words, std::string_view word) {
 class ChunkReader {
 public:
     ChunkReader(std::string_view text, Records& all, Counts before, Counts total)
-        : text_(text), all_(all), seen_(before), total_(total) {}
+        : first_position(before.positions), text_(text), all_(all), seen_(before), total_(total) {}
 
     void read(size_t begin, size_t end) {
         Lines lines(text_, begin, end);
         for (std::string_view line; lines.next(line);) read_line(line);
     }
 
+    const size_t first_position;  ///< of this chunk
     std::vector<Run> runs;
     std::vector<Library> libraries;
+    std::vector<Rgb> colors;  ///< of this chunk's positions, up to the last that has one; white for those without
     Notes<Remark> notes;
     State state;  ///< what this chunk said last
 
@@ -111,9 +114,15 @@ void ChunkReader::read_position(Words& words) {
     words.more();
     const char* const first = words.position();
     int extra = 0;
-    for (; words.more(); ++extra) required(words, "a weight or a colour after the coordinates");
+    Rgb color;
+    for (; words.more(); ++extra) {
+        const float value = required(words, "a weight or a colour after the coordinates");
+        color = {color.g, color.b, value > 0 && is_finite(value) ? value : 0};
+    }
     if (extra > 4) fail(first, "too many numbers, expected three coordinates and at most a weight or a colour");
-    if (extra >= 3) notes.add(Remark::vertex_color, {}, offset_of(first));
+    if (extra < 3) return;
+    colors.resize(seen_.positions - first_position, {1, 1, 1});
+    colors.back() = color;
 }
 
 void ChunkReader::read_uv(Words& words) {
@@ -286,6 +295,10 @@ void join(std::vector<ChunkReader>& chunks, Records& all) {
         carried = chunk.state;
         all.libraries.insert(all.libraries.end(), chunk.libraries.begin(), chunk.libraries.end());
         all.notes.append(chunk.notes);
+        if (chunk.colors.empty()) continue;
+        all.colors.resize(all.positions.size(), {1, 1, 1});
+        std::copy(chunk.colors.begin(), chunk.colors.end(),
+                  all.colors.begin() + static_cast<std::ptrdiff_t>(chunk.first_position));
     }
 }
 

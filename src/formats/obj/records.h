@@ -33,10 +33,9 @@ struct Run {
 };
 
 enum class Remark : uint8_t {
-    vertex_color,  ///< v x y z r g b
-    points,        ///< p
-    lines,         ///< l
-    free_form,     ///< curves and surfaces
+    points,     ///< p
+    lines,      ///< l
+    free_form,  ///< curves and surfaces
     unknown_keyword,
     uvs_missing,      ///< faces refer to vt, and the file has none
     normals_missing,  ///< faces refer to vn, and the file has none
@@ -50,7 +49,8 @@ struct Library {
 
 struct Records {
     std::vector<Vec3> positions, normals;
-    std::vector<Vec2> uvs;  ///< as in the file
+    std::vector<Vec2> uvs;    ///< as in the file
+    std::vector<Rgb> colors;  ///< of the positions, as in the file; empty where none has one
     std::vector<Run> runs;
     std::vector<Library> libraries;
     Notes<Remark> notes;

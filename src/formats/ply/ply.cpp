@@ -30,6 +30,29 @@ float to_float(double value) {
     return static_cast<float>(value);
 }
 
+/// What a colour is divided by: integers by their largest value.
+float color_scale(Scalar type) {
+    switch (type) {
+        case Scalar::i8:
+            return 127;
+        case Scalar::u8:
+            return 255;
+        case Scalar::i16:
+            return 32767;
+        case Scalar::u16:
+            return 65535;
+        case Scalar::i32:
+            return 2147483647.0f;
+        case Scalar::u32:
+            return 4294967295.0f;
+        default:
+            return 1;
+    }
+}
+
+/// What is no colour is black.
+float color_value(float value, float scale) { return value > 0 && is_finite(value) ? value / scale : 0; }
+
 /// What the data say, before polygons become triangles.
 struct Contents {
     Mesh mesh;                      ///< without indices
@@ -38,6 +61,7 @@ struct Contents {
     uint64_t too_small = 0;         ///< faces of fewer than three corners
     size_t too_small_at = 0;        ///< byte of the first one
     bool trailing = false;          ///< something follows the last element
+    bool linear_colors = false;     ///< they are floating-point numbers
     size_t end = 0;                 ///< byte where it begins
 };
 
@@ -133,7 +157,7 @@ private:
 
 template <class Source>
 void BodyReader<Source>::read_vertices(const Element& element) {
-    constexpr size_t kSlots = 8;  // x y z, nx ny nz, u v
+    constexpr size_t kSlots = 11;  // x y z, nx ny nz, u v, r g b
     const std::array<int, kSlots> at{element.find({"x"}),
                                      element.find({"y"}),
                                      element.find({"z"}),
@@ -141,10 +165,14 @@ void BodyReader<Source>::read_vertices(const Element& element) {
                                      element.find({"ny"}),
                                      element.find({"nz"}),
                                      element.find({"u", "s", "texture_u", "texture_s"}),
-                                     element.find({"v", "t", "texture_v", "texture_t"})};
+                                     element.find({"v", "t", "texture_v", "texture_t"}),
+                                     element.find({"red", "diffuse_red", "r"}),
+                                     element.find({"green", "diffuse_green", "g"}),
+                                     element.find({"blue", "diffuse_blue", "b"})};
     if (at[0] < 0 || at[1] < 0 || at[2] < 0)
         throw ParseFailure{element.offset, "element vertex lacks one of the properties x, y, z", {}};
     const bool normals = at[3] >= 0 && at[4] >= 0 && at[5] >= 0, uvs = at[6] >= 0 && at[7] >= 0;
+    const bool colors = at[8] >= 0 && at[9] >= 0 && at[10] >= 0;
     std::vector<int> slot_of(element.properties.size(), -1);
     for (size_t slot = 0; slot < kSlots; ++slot) {
         if (at[slot] < 0) continue;
@@ -161,7 +189,16 @@ void BodyReader<Source>::read_vertices(const Element& element) {
     mesh.positions.resize(count);
     if (normals) mesh.normals.resize(count);
     if (uvs) mesh.uvs.resize(count);
-    std::array<float, kSlots> value{};
+    std::array<float, kSlots> value{}, scale{};
+    if (colors) {
+        mesh.colors.resize(count);
+        out_.linear_colors = true;
+        for (size_t slot = 8; slot < kSlots; ++slot) {
+            const Scalar type = element.properties[static_cast<size_t>(at[slot])].type;
+            scale[slot] = color_scale(type);
+            out_.linear_colors = out_.linear_colors && ply::is_floating(type);
+        }
+    }
     for (size_t i = 0; i < count; ++i) {
         number_ = i;
         for (size_t p = 0; p < slot_of.size(); ++p) {
@@ -174,6 +211,9 @@ void BodyReader<Source>::read_vertices(const Element& element) {
         mesh.positions[i] = {value[0], value[1], value[2]};
         if (normals) mesh.normals[i] = {value[3], value[4], value[5]};
         if (uvs) mesh.uvs[i] = {value[6], 1 - value[7]};
+        if (colors)
+            mesh.colors[i] = {color_value(value[8], scale[8]), color_value(value[9], scale[9]),
+                              color_value(value[10], scale[10])};
     }
 }
 
@@ -309,7 +349,10 @@ void describe_ignored(const Header& header, std::string_view data, const std::st
     for (const Element& element : header.elements) {
         const SourceLocation where = text_location(data, name, element.offset);
         if (element.name == "vertex") {
-            if (element.find({"red", "diffuse_red", "r"}) >= 0) diagnostics.warn("vertex colours are not used", where);
+            const bool red = element.find({"red", "diffuse_red", "r"}) >= 0;
+            if (red &&
+                (element.find({"green", "diffuse_green", "g"}) < 0 || element.find({"blue", "diffuse_blue", "b"}) < 0))
+                diagnostics.warn("vertex colours without green or blue are not used", where);
         } else if (element.name == "face") {
             if (element.find({"texcoord"}) >= 0) diagnostics.warn("texture coordinates of faces are not used", where);
         } else if (element.name != "tristrips" && element.name != "edge" && element.count != 0) {
@@ -348,6 +391,7 @@ MeshFile read_ply(std::string_view data, const std::string& name, const Header& 
     if (counts.fans)
         file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
                               counts.fans);
+    if (contents.linear_colors) file.color_space = ColorSpace::linear;
     if (!contents.mesh.indices.empty()) file.parts.push_back({std::move(contents.mesh), -1, {}});
     return file;
 }

@@ -30,6 +30,8 @@ inline constexpr Key kConstantTexture[] = {"type", "color"};
 inline constexpr Key kImageTexture[] = {"type", "path", "color_space", "wrap", "filter", "scale", "offset", "rotation"};
 inline constexpr Key kCheckerboardTexture[] = {"type", "color0", "color1", "scale", "offset", "rotation"};
 
+inline constexpr Key kVertexColorTexture[] = {"type"};
+
 inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided", "roughness", "normal_map", "bump_map"};
 inline constexpr Key kRefraction[] = {"type", "eta", "normal_map", "bump_map"};
 inline constexpr Key kGlass[] = {"type",      "eta",   "reflectance", "transmittance",
@@ -66,16 +68,19 @@ inline constexpr Key kOpenPbr[] = {"type",
 inline constexpr Key kConductor[] = {"type",      "metal", "n",    "k",          "reflectance", "edge_reflectance",
                                      "roughness", "alpha", "tint", "normal_map", "bump_map"};
 
+inline constexpr Key kMix[] = {"type", "materials", "weight"};
+
 inline constexpr Key kNormalMap[] = {"texture", "strength", "flip_y"};
 inline constexpr Key kBumpMap[] = {"texture", "scale"};
 
-inline constexpr Key kMeshShape[] = {"type", "path", "vertices", "triangles", "normals", "uvs"};
+inline constexpr Key kMeshShape[] = {"type",      "path",    "color_space", "vertices",
+                                     "triangles", "normals", "uvs",         "colors"};
 inline constexpr Key kSphereShape[] = {"type", "center", "radius"};
 inline constexpr Key kRectangleShape[] = {"type", "center", "half_u", "half_v"};
 inline constexpr Key kDiskShape[] = {"type", "center", "normal", "radius"};
 
-inline constexpr Key kMeshObject[] = {"type", "name",     "material",  "transform", "light",
-                                      "path", "vertices", "triangles", "normals",   "uvs"};
+inline constexpr Key kMeshObject[] = {"type",        "name",     "material",  "transform", "light", "path",
+                                      "color_space", "vertices", "triangles", "normals",   "uvs",   "colors"};
 inline constexpr Key kSphereObject[] = {"type", "name", "material", "transform", "light", "center", "radius"};
 inline constexpr Key kRectangleObject[] = {"type",  "name",   "material", "transform",
                                            "light", "center", "half_u",   "half_v"};
@@ -108,7 +113,8 @@ inline constexpr ObjectSpec kCameraSpecs[] = {{"perspective_camera", keys::kPers
                                               {"fisheye_camera", keys::kFisheyeCamera}};
 inline constexpr ObjectSpec kTextureSpecs[] = {{"constant_texture", keys::kConstantTexture},
                                                {"image_texture", keys::kImageTexture},
-                                               {"checkerboard_texture", keys::kCheckerboardTexture}};
+                                               {"checkerboard_texture", keys::kCheckerboardTexture},
+                                               {"vertex_color_texture", keys::kVertexColorTexture}};
 inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiffuse},
                                                 {"refraction_material", keys::kRefraction},
                                                 {"glass_material", keys::kGlass},
@@ -116,7 +122,8 @@ inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiff
                                                 {"conductor_material", keys::kConductor},
                                                 {"thin_glass_material", keys::kThinGlass},
                                                 {"diffuse_transmission_material", keys::kDiffuseTransmission},
-                                                {"open_pbr_material", keys::kOpenPbr}};
+                                                {"open_pbr_material", keys::kOpenPbr},
+                                                {"mix_material", keys::kMix}};
 inline constexpr ObjectSpec kNormalMapSpec{"normal_map", keys::kNormalMap};
 inline constexpr ObjectSpec kBumpMapSpec{"bump_map", keys::kBumpMap};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},
@@ -139,9 +146,9 @@ inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
                                              {"environment_light", keys::kEnvironmentLight}};
 
 // The values of "type", in the order of the specifications above and of the enumerations that the readers use.
-inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard"};
+inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard", "vertex_color"};
 inline constexpr std::string_view kMaterialTypes[] = {
-    "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission", "open_pbr"};
+    "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission", "open_pbr", "mix"};
 inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};
@@ -150,6 +157,6 @@ inline constexpr std::string_view kCameraTypes[] = {"perspective", "orthographic
 inline constexpr std::string_view kFisheyeProjections[] = {"equidistant", "equisolid"};
 inline constexpr std::string_view kColorSpaces[] = {"linear", "srgb"};
 inline constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror", "black"};
-inline constexpr std::string_view kTextureFilters[] = {"nearest", "bilinear"};
+inline constexpr std::string_view kTextureFilters[] = {"nearest", "bilinear", "trilinear"};
 
 }  // namespace steradian::scene_json

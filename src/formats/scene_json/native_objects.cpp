@@ -92,11 +92,14 @@ NativeLoader::Geometry NativeLoader::read_geometry(ObjectReader& reader, size_t 
 NativeLoader::Geometry NativeLoader::read_mesh(ObjectReader& reader, const std::string& name) {
     if (!reader.find("path"))
         return {std::nullopt, assets_.add_shape(assets_.add_mesh(read_inline_mesh(reader), name), name)};
-    for (const std::string_view key : {"vertices", "triangles", "normals", "uvs"})
+    for (const std::string_view key : {"vertices", "triangles", "normals", "uvs", "colors"})
         if (reader.find(key))
             source_.fail(reader.key_offset(key), "a mesh has either a 'path' or its own " + quoted(key) + ", not both");
     const NamedPath path = read_path(reader);
-    return {source_.take(assets_.load_model(path.path), path.offset), std::nullopt};
+    std::optional<ColorSpace> colors;
+    if (const auto space = reader.find("color_space"))
+        colors = static_cast<ColorSpace>(json::read_choice(source_, *space, "'color_space'", kColorSpaces));
+    return {source_.take(assets_.load_model(path.path, colors), path.offset), std::nullopt};
 }
 
 Mesh NativeLoader::read_inline_mesh(ObjectReader& reader) const {
@@ -131,6 +134,12 @@ Mesh NativeLoader::read_inline_mesh(ObjectReader& reader) const {
     if (const auto uvs = reader.find("uvs")) {
         read_rows(source_, *uvs, "'uvs'", 2, kUv, [&](const float* t) { mesh.uvs.push_back({t[0], t[1]}); });
         expect_count(source_, *uvs, "'uvs'", mesh.uvs.size(), mesh.positions.size());
+    }
+    if (const auto colors = reader.find("colors")) {
+        read_rows(source_, *colors, "'colors'", 3, json::kReflectance, [&](const float* c) {
+            mesh.colors.push_back({c[0], c[1], c[2]});
+        });
+        expect_count(source_, *colors, "'colors'", mesh.colors.size(), mesh.positions.size());
     }
     return mesh;
 }

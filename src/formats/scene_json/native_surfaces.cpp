@@ -58,6 +58,8 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name, bool 
     Texture texture;
     if (type == 0) {
         texture = ConstantTexture{reader.color("color", json::kReflectance)};
+    } else if (type == 3) {
+        texture = VertexColorTexture{};
     } else {
         CheckerTexture checker;
         checker.even = reader.color_or("color0", checker.even, json::kReflectance);
@@ -79,7 +81,9 @@ TextureId NativeLoader::read_image_texture(Value value, const std::string& name,
     const NamedPath path = read_path(reader);
     ImageTexture texture;
     read_wrap(reader, texture);
-    texture.bilinear = reader.choice_or("filter", 1, kTextureFilters) == 1;
+    const size_t filter = reader.choice_or("filter", 1, kTextureFilters);
+    texture.bilinear = filter >= 1;
+    texture.mip_map = filter == 2;
     read_placement(reader, texture);
     const auto space = reader.find("color_space");
     const size_t chosen = space ? json::read_choice(source_, *space, "'color_space'", kColorSpaces) : 0;
@@ -157,49 +161,6 @@ DiffuseTransmissionMaterial NativeLoader::read_diffuse_transmission(ObjectReader
     return out;
 }
 
-TextureId NativeLoader::read_numbers(Value value, std::string_view what) {
-    const auto texture = find_texture(value, /*numbers=*/true);
-    if (!texture)
-        source_.fail(value.offset(),
-                     std::string(what) + " must be the name of a texture or a texture, got " + json::describe(value));
-    const auto* image = std::get_if<ImageTexture>(&scene().textures[index(*texture)]);
-    if (image && image->color_space == ColorSpace::srgb)
-        source_.fail(value.offset(), std::string(what) + " has numbers, not colours: its texture must be linear",
-                     "give the texture \"color_space\": \"linear\"");
-    return *texture;
-}
-
-std::optional<Relief> NativeLoader::read_relief(ObjectReader& material) {
-    static constexpr Range kStrength{0, 100}, kHeight{-1e6, 1e6};
-    const auto normals = material.find("normal_map"), heights = material.find("bump_map");
-    if (normals && heights)
-        source_.fail(material.key_offset("bump_map"), "either 'normal_map' or 'bump_map', not both");
-    Relief out;
-    if (normals) {
-        NormalMap map;
-        if (normals->is(Kind::object)) {
-            ObjectReader reader(source_, *normals, kNormalMapSpec, "'normal_map'");
-            map.texture = read_numbers(reader.require("texture"), "a normal map");
-            map.strength = reader.number_or("strength", map.strength, kStrength);
-            map.flip_y = reader.boolean_or("flip_y", map.flip_y);
-            reader.finish();
-        } else {
-            map.texture = read_numbers(*normals, "'normal_map'");
-        }
-        out.map = map;
-    } else if (heights) {
-        ObjectReader reader(source_, *heights, kBumpMapSpec, "'bump_map'");
-        BumpMap map;
-        map.texture = read_numbers(reader.require("texture"), "a bump map");
-        map.scale = reader.number_or("scale", map.scale, kHeight);
-        reader.finish();
-        out.map = map;
-    } else {
-        return std::nullopt;
-    }
-    return out;
-}
-
 void NativeLoader::read_materials(Value value) {
     expect_names(source_, value, "materials", "material");
     for (const Member member : value.members())
@@ -254,11 +215,15 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
         case 7:
             material = read_open_pbr(reader);
             break;
+        case 8:
+            material = read_mix(reader);
+            break;
         default:
             material = read_diffuse_transmission(reader);
             break;
     }
-    std::optional<Relief> relief = read_relief(reader);
+    std::optional<Relief> relief;
+    if (type != 8) relief = read_relief(reader);
     reader.finish();
     const MaterialId id = assets_.add_material(material, name);
     if (relief) {

@@ -9,7 +9,7 @@
 namespace steradian {
 
 inline ConductorBsdf make_lobe(const ConductorMaterial& material, const LobeContext& context) {
-    const auto read = [&](TextureId id) { return eval_texture(context.scene.scene, id, context.point.uv); };
+    const auto read = [&](TextureId id) { return eval_texture(context.scene, id, context.point); };
     ConductorBsdf out;
     if (const auto* complex = std::get_if<ComplexIndex>(&material.reflectance)) {
         out.fresnel = *complex;

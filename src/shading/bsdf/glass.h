@@ -6,10 +6,10 @@
 
 namespace steradian {
 
-inline Lobe make_lobe(const GlassMaterial& material, const LobeContext& context) {
+inline PlainLobe make_lobe(const GlassMaterial& material, const LobeContext& context) {
     if (context.material.energy) {
         const Roughness& roughness = material.roughness;
-        const auto read = [&](TextureId id) { return eval_texture(context.scene.scene, id, context.point.uv).r; };
+        const auto read = [&](TextureId id) { return eval_texture(context.scene, id, context.point).r; };
         const Microfacets facets = microfacets(roughness, roughness.texture ? read(*roughness.texture) : 1);
         if (!facets.smooth())
             return RoughGlassBsdf{material.eta, material.reflectance, material.transmittance, facets,

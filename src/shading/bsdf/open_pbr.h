@@ -54,11 +54,11 @@ inline Rgb coat_darkening(const OpenPbrMaterial& m, const OpenPbrTables& tables,
 inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& context) {
     const OpenPbrTables& tables = *context.material.open_pbr;
     const auto color = [&](const ColorInput& in) {
-        return in.texture ? in.value * eval_texture(context.scene.scene, *in.texture, context.point.uv) : in.value;
+        return in.texture ? in.value * eval_texture(context.scene, *in.texture, context.point) : in.value;
     };
     const auto number = [&](const FloatInput& in) {
         if (!in.texture) return in.value;
-        return in.value * clamp_to(eval_texture(context.scene.scene, *in.texture, context.point.uv).r, 0.0f, 1.0f);
+        return in.value * clamp_to(eval_texture(context.scene, *in.texture, context.point).r, 0.0f, 1.0f);
     };
     OpenPbrBsdf out;
     out.tables = &tables;
