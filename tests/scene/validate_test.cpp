@@ -129,6 +129,14 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.lights[0] = DirectionalLight{{0, 0, 0}};
               }},
+        Fault{"angular diameter",
+              [](Scene& s) {
+                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 91};
+              }},
+        Fault{"angular diameter",
+              [](Scene& s) {
+                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan};
+              }},
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
         Fault{"light samples",
               [](Scene& s) {
@@ -153,10 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.cameras[0] = PanoramaCamera{{kNan, 0, 0}};
               }},
-        Fault{"(0, 360]",
-              [](Scene& s) {
-                  s.cameras[0] = FisheyeCamera{{}, {0, 0, 1}, {0, 1, 0}, 361};
-              }},
+        Fault{"(0, 360]", [](Scene& s) { s.cameras[0] = FisheyeCamera{{}, {0, 0, 1}, {0, 1, 0}, 361}; }},
         Fault{"camera 0: up", [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up = {}; }}));
 
 TEST(Validate, AcceptsAGoodScene) {
