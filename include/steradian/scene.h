@@ -271,10 +271,15 @@ struct SpotLight {
     float outer_angle = 45;    ///< half angle, degrees, (0, 180]
 };
 
+/// From infinitely far. With an angular diameter it is a disc of even radiance in the sky, which camera rays and
+/// reflections see; the sun's is 0.53.
 struct DirectionalLight {
-    Vec3 direction{0, -1, 0};  ///< where the light travels to
-    Rgb irradiance{1, 1, 1};   ///< W/m² on a surface that faces it
+    Vec3 direction{0, -1, 0};       ///< where the light travels to
+    Rgb irradiance{1, 1, 1};        ///< W/m² on a surface that faces it
+    float angular_diameter = 0;     ///< degrees, 0 or kMinAngularDiameter … kMaxAngularDiameter
+    bool visible_to_camera = true;  ///< of a disc: to rays from the camera; everything else sees it anyway
 };
+inline constexpr double kMinAngularDiameter = 1e-3, kMaxAngularDiameter = 90;  ///< degrees
 
 /// Shadow rays per camera sample that one light may ask for.
 inline constexpr uint32_t kMaxLightSamples = 4096;
@@ -285,6 +290,8 @@ struct AreaLight {
     Rgb radiance{1, 1, 1};
     bool two_sided = false;
     uint32_t samples = 1;  ///< shadow rays per camera sample, 1 … kMaxLightSamples
+    bool visible_to_camera =
+        true;  ///< otherwise rays from the camera pass through the instance as if it were not there
 };
 
 /// Radiance from infinitely far: constant, or a latitude-longitude image times `radiance`.
@@ -294,8 +301,9 @@ struct EnvironmentLight {
     Rgb radiance{1, 1, 1};
     std::optional<ImageId> image = std::nullopt;
     ColorSpace color_space = ColorSpace::linear;
-    float rotation = 0;    ///< degrees
-    uint32_t samples = 1;  ///< shadow rays per camera sample, 1 … kMaxLightSamples
+    float rotation = 0;             ///< degrees
+    uint32_t samples = 1;           ///< shadow rays per camera sample, 1 … kMaxLightSamples
+    bool visible_to_camera = true;  ///< otherwise it is black where a ray from the camera meets nothing else
 };
 
 /// At most one EnvironmentLight per scene.

@@ -17,7 +17,7 @@ private:
     void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
         Path& path = this->path(id);
         if (!hit.found()) {
-            add_emission(path, environment_radiance(shading_, ray.d));
+            add_emission(path, sky_radiance(shading_, ray.d, depth == 0));
             return;
         }
         const SurfacePoint point = arrive(id, ray, hit);

@@ -48,7 +48,10 @@ private:
     void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
         if (depth == 0) states_[id] = {};
         if (!hit.found()) {
-            add_emission(id, environment_radiance(shading_, ray.d), shading_.environment_light, ray.d, nullptr, depth);
+            for (uint32_t i = 0; i < distant_sources(shading_); ++i) {
+                const DistantRadiance sky = distant_radiance(shading_, i, ray.d, depth == 0);
+                add_emission(id, sky.radiance, sky.light, ray.d, nullptr, depth);
+            }
             return;
         }
         const SurfacePoint point = arrive(id, ray, hit);

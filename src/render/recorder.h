@@ -21,8 +21,9 @@ public:
     void emission(Rgb radiance, float bsdf_pdf, float light_pdf, float mis_weight, Rgb contribution) noexcept {
         if (failed_) return;
         TracedVertex& v = trace_.vertices.back();
-        v.emission = radiance, v.bsdf_pdf = bsdf_pdf, v.light_pdf = light_pdf;
-        v.mis_weight = mis_weight, v.contribution = contribution;
+        // Of several lights on top of each other, a sun in the sky, the densities are those of the last.
+        v.emission = v.emission + radiance, v.bsdf_pdf = bsdf_pdf, v.light_pdf = light_pdf;
+        v.mis_weight = mis_weight, v.contribution = v.contribution + contribution;
     }
     void light(TracedLight light) noexcept {
         guarded([&] { trace_.vertices.back().lights.push_back(std::move(light)); });

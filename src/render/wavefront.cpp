@@ -101,6 +101,7 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
         c_.scene.accel.intersect(std::span(rays_).subspan(first, count), hits.subspan(first, count), kind);
     });
     depth_ = depth;
+    if (depth == 0 && shading_.hides_instances) look_through_hidden_lights(hits);
     next_active_.clear();
     next_rays_.clear();
     bounce(depth);
@@ -108,6 +109,19 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
     counters_->bounce_rays += next_rays_.size();
     active_.swap(next_active_);
     rays_.swap(next_rays_);
+}
+
+/// Camera rays go on to what is behind a light that they do not see.
+void WavefrontIntegrator::look_through_hidden_lights(std::span<Hit> hits) noexcept {
+    const auto hidden = [&](const Hit& hit) {
+        const uint32_t light = hit.found() ? shading_.instances[hit.instance].area_light : kNoLight;
+        return light != kNoLight && !std::get<AreaLight>(shading_.scene.lights[light]).visible_to_camera;
+    };
+    for (size_t i = 0; i < hits.size() && !stopped(); ++i)
+        while (hidden(hits[i])) {
+            const Hit after = hits[i];
+            c_.scene.accel.next_hit({&rays_[i], 1}, {&after, 1}, {&hits[i], 1});
+        }
 }
 
 void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept {

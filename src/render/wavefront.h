@@ -122,6 +122,7 @@ private:
 
     void generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept;
     void advance(uint32_t depth) noexcept;
+    void look_through_hidden_lights(std::span<Hit> hits) noexcept;
     void trace_shadow_rays() noexcept;
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;

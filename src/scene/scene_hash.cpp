@@ -98,10 +98,11 @@ private:
     void put(const Instance& i) { put(i.shape, i.material, i.world_from_object); }
     void put(const PointLight& l) { put(l.position, l.intensity); }
     void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle); }
-    void put(const DirectionalLight& l) { put(l.direction, l.irradiance); }
-    void put(const AreaLight& l) { put(l.instance, l.radiance, l.two_sided, l.samples); }
+    void put(const DirectionalLight& l) { put(l.direction, l.irradiance, l.angular_diameter, l.visible_to_camera); }
+    void put(const AreaLight& l) { put(l.instance, l.radiance, l.two_sided, l.samples, l.visible_to_camera); }
     void put(const EnvironmentLight& l) {
-        put(l.radiance, l.image.has_value(), l.image.value_or(ImageId{}), l.color_space, l.rotation, l.samples);
+        put(l.radiance, l.image.has_value(), l.image.value_or(ImageId{}), l.color_space, l.rotation, l.samples,
+            l.visible_to_camera);
     }
     void put(const PerspectiveCamera& c) {
         put(c.position, c.look_at, c.up, c.vertical_fov, c.aperture_radius, c.focus_distance.has_value(),

@@ -242,6 +242,9 @@ private:
     void check(const DirectionalLight& l) const {
         direction(l.direction, "the direction must be finite and not zero");
         color(l.irradiance, "the irradiance must be finite and not negative");
+        require(l.angular_diameter == 0 || (l.angular_diameter >= float(kMinAngularDiameter) &&
+                                            l.angular_diameter <= float(kMaxAngularDiameter)),
+                "the angular diameter must be 0 or between 0.001 and 90 degrees");
     }
     void samples(uint32_t n) const {
         require(n >= 1 && n <= kMaxLightSamples, "the number of light samples must be between 1 and 4096");

@@ -42,4 +42,25 @@ Rgb environment_radiance(const ShadingScene& scene, Vec3 d) noexcept {
     return scene.environment ? scene.environment->radiance(scene.scene, d) : Rgb{};
 }
 
+uint32_t distant_sources(const ShadingScene& scene) noexcept { return static_cast<uint32_t>(1 + scene.suns.size()); }
+
+DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera) noexcept {
+    const auto sees = [&](const auto& light) { return !from_camera || light.visible_to_camera; };
+    if (source == kEnvironmentSource) {
+        const uint32_t light = scene.environment_light;
+        const bool seen = light != kNoLight && sees(std::get<EnvironmentLight>(scene.scene.lights[light]));
+        return {light, seen ? environment_radiance(scene, d) : Rgb{}};
+    }
+    const uint32_t light = scene.suns[source - 1];
+    const bool seen = sees(std::get<DirectionalLight>(scene.scene.lights[light]));
+    return {light, seen ? disc_radiance(scene.lights[light], d) : Rgb{}};
+}
+
+Rgb sky_radiance(const ShadingScene& scene, Vec3 d, bool from_camera) noexcept {
+    Rgb sum = distant_radiance(scene, kEnvironmentSource, d, from_camera).radiance;
+    for (uint32_t i = 1; i < distant_sources(scene); ++i)
+        sum = sum + distant_radiance(scene, i, d, from_camera).radiance;
+    return sum;
+}
+
 }  // namespace steradian

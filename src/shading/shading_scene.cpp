@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "math/elementary.h"
+#include "math/warp.h"
 #include "shading/environment.h"
 #include "shading/fresnel.h"
 #include "shading/light/mesh_emitter.h"
@@ -175,9 +176,20 @@ public:
         data().cos_inner = math::cos(light.inner_angle * kRadians);
         data().cos_outer = math::cos(light.outer_angle * kRadians);
     }
-    void operator()(const DirectionalLight& light) { data().direction = normalize(Vec3d(light.direction)); }
+    void operator()(const DirectionalLight& light) {
+        data().direction = normalize(Vec3d(light.direction));
+        if (light.angular_diameter == 0) return;
+        const double sine = math::sin(light.angular_diameter * (std::numbers::pi / 360));
+        data().one_minus_cos = warp::one_minus_cos(sine * sine);
+        // The cosine over the disc integrates to π sin², whatever the angle.
+        const double per_irradiance = 1 / (std::numbers::pi * sine * sine);
+        const auto scaled = [&](float e) { return static_cast<float>(e * per_irradiance); };
+        data().radiance = {scaled(light.irradiance.r), scaled(light.irradiance.g), scaled(light.irradiance.b)};
+        scene_.suns.push_back(current());
+    }
     void operator()(const AreaLight& light) {
         scene_.instances[index(light.instance)].area_light = current();
+        scene_.hides_instances = scene_.hides_instances || !light.visible_to_camera;
         const ShapeId shape = scene_.scene.instances[index(light.instance)].shape;
         std::visit(EmitterBuilder(scene_, light.instance, light.two_sided, data()), scene_.scene.shapes[index(shape)]);
     }

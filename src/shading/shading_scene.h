@@ -47,6 +47,8 @@ struct ShadingScene {
         Emitter emitter;                      ///< for area lights: the surface in world space
         Vec3d direction;                      ///< for spots and directional lights: where they point, unit length
         double cos_inner = 1, cos_outer = 1;  ///< for spots
+        double one_minus_cos = 0;             ///< for directional lights: of half the angular diameter
+        Rgb radiance;                         ///< for directional lights with an angular diameter
     };
     std::vector<LightData> lights;
     LightSelection light_selection;  ///< how one of them is chosen
@@ -66,6 +68,8 @@ struct ShadingScene {
     bool uses_footprints() const { return !mip_maps.empty(); }
 
     uint32_t environment_light = kNoLight;
+    std::vector<uint32_t> suns;    ///< directional lights with an angular diameter, ascending
+    bool hides_instances = false;  ///< there is an area light that is not visible to the camera
     std::shared_ptr<const EnvironmentTable> environment;
 };
 

@@ -49,6 +49,7 @@ std::vector<Case> delta_light_cases();
 std::vector<Case> area_light_cases();
 std::vector<Case> emitter_side_cases();
 std::vector<Case> environment_cases();
+std::vector<Case> sun_cases();
 std::vector<Case> specular_cases();
 std::vector<Case> path_cases();
 std::vector<Case> surface_cases();

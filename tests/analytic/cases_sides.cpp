@@ -92,10 +92,36 @@ void add_indirect(std::vector<Case>& out) {
     out.push_back(whole("emitter_back_blocks_light", "0: it shines upwards only, and is opaque", hidden, 0.0));
 }
 
+/// A light that the camera does not see: what is behind it is, and everything else is as if nothing had been said.
+void add_hidden(std::vector<Case>& out) {
+    const Object light = emission(kGlow, true).set("visible_to_camera", false);
+    for (EmitterShape& s : shapes()) {
+        const std::string id = std::string("emitter_") + s.name + "_hidden";
+        const Object it = s.object.set("light", light);
+        const SceneText pair = empty_scene({0.25, 0.25, 3}, {0.1, 0.2, 0})
+                                   .object(it)
+                                   .object(sphere({0, 0, -4}, 2, "black").set("light", emission({5, 6, 7})))
+                                   .depth(0);
+        out.push_back(whole(id, "L of what is behind it", pair, {5, 6, 7}));
+        out.push_back(noisy(whole(id + "_lights", "ρ L F", wall_scene(-2).object(it), kGlow * (kRho * s.form_factor))));
+        SceneText mirrored = empty_scene({0.5, 0.25, 1}, {0.1, 0, 2})
+                                 .material("mirror", mirror())
+                                 .object(rectangle({0, 0, 2}, {1, 0, 0}, {0, -1, 0}, "mirror"))
+                                 .object(it);
+        out.push_back(whole(id + "_mirrored", "L: a mirror shows it", mirrored, kGlow));
+    }
+    // A body has two surfaces to look through, and two of them four.
+    SceneText bodies = empty_scene({0, 0, 4}, {0, 0, 0}).light(environment(0.5)).depth(0);
+    bodies.object(sphere({0, 0, 0}, 1, "black").set("light", light))
+        .object(sphere({0.2, 0, -1}, 1, "floor").set("light", light));
+    out.push_back(whole("emitter_spheres_hidden", "L of the sky behind them", bodies, 0.5));
+}
+
 }  // namespace
 
 std::vector<Case> emitter_side_cases() {
     std::vector<Case> out;
+    add_hidden(out);
     add_flat(out);
     add_spheres(out);
     add_indirect(out);

@@ -98,6 +98,16 @@ double slab_transmission(double eta, int depth) {
     return sum;
 }
 
+double hidden_disc_share(double half_angle_degrees, double edge_degrees) {
+    const double s = std::sin(radians(half_angle_degrees)), k = std::sin(radians(edge_degrees));
+    const double y = std::sqrt((s * s - k * k) / (1 - k * k));  // where the ellipse meets the circle
+    const double circle = y * std::sqrt(s * s - y * y) + s * s * std::asin(y / s);
+    const double ellipse = k * (y * std::sqrt(1 - y * y) + std::asin(y));
+    // Beyond the meeting points all of the circle is hidden where the edge leaves its middle behind.
+    const double beyond = k < 0 ? kPi * s * s - 2 * circle : 0;
+    return (circle - ellipse + beyond) / (kPi * s * s);
+}
+
 double tent_cdf(double x, double radius) {
     const double t = std::clamp(x / radius, -1.0, 1.0);
     return t < 0 ? (1 + t) * (1 + t) / 2 : 1 - (1 - t) * (1 - t) / 2;

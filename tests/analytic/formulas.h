@@ -44,6 +44,12 @@ double point_irradiance(V3 light, V3 p, V3 n);
 /// Smoothstep t² (3 - 2t) with t = (cos θ - cos outer) / (cos inner - cos outer), clamped to [0, 1].
 double spot_falloff(double angle_degrees, double inner_degrees, double outer_degrees);
 
+/// Share of the irradiance from an even disc of half angle α that a half plane hides from a surface which faces the
+/// disc's middle; the half plane's straight edge is at `edge_degrees` from the middle, in [-α, α], negative where more
+/// than half is hidden. Along the axis (Nusselt) the disc becomes a circle of radius sin α, and the edge an ellipse
+/// x = sin(edge) √(1 - y²).
+double hidden_disc_share(double half_angle_degrees, double edge_degrees);
+
 // --- Form factors ----------------------------------------------------------------------------------------------
 
 /// Any planar polygon, clipped at the horizon of the element: Lambert 1760, F = 1/2π Σ Γ_k · n, where Γ_k points along

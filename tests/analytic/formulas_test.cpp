@@ -84,6 +84,19 @@ TEST(Formulas, SpheresAgreeWithQuadratureOverTheirCones) {
                 overhead_ellipsoid_form_factor(1.2, 0.5, 2), 1e-4);
 }
 
+TEST(Formulas, DiscsBehindAnEdgeAgreeWithQuadrature) {
+    for (const double edge : {-14.0, -8.0, 0.0, 5.0, 14.0}) {
+        // Directions (θ, φ) about the axis; what has tan of its angle in the plane across the edge beyond the edge's.
+        const auto part = [&](double theta, double phi) {
+            const bool hidden = std::sin(theta) * std::cos(phi) > std::tan(radians(edge)) * std::cos(theta);
+            return hidden ? std::cos(theta) * std::sin(theta) : 0;
+        };
+        const double s = std::sin(radians(15));
+        EXPECT_NEAR(integrate(part, 0, radians(15), 0, 2 * kPi, 400) / (kPi * s * s), hidden_disc_share(15, edge), 2e-4)
+            << edge;
+    }
+}
+
 TEST(Formulas, InterfacesConserveEnergy) {
     EXPECT_NEAR(fresnel(1, 1.5), 0.04, 1e-15);
     EXPECT_EQ(fresnel(std::cos(radians(42)), 1 / 1.5), 1);

@@ -7,8 +7,8 @@
 namespace steradian::analytic {
 namespace {
 
-/// Coloured walls, a mirror and a glass ball, lights of every kind: one-sided and two-sided, a mesh, a sky that comes
-/// in at the front. Small enough to be rendered many times.
+/// Coloured walls, a mirror and a glass ball, lights of every kind: one-sided and two-sided, hidden ones, a mesh, a sky
+/// that comes in at the front, and a wide sun. Small enough to be rendered many times.
 SceneText room() {
     SceneText s;
     s.look({0, 1, 5}, {0, 1, 0}, 27).size(12, 12).integrator("path");
@@ -24,11 +24,12 @@ SceneText room() {
     s.object(sphere({-0.45, 0.4, -0.2}, 0.4, "mirror")).object(sphere({0.45, 0.3, 0.3}, 0.3, "glass"));
     s.object(ceiling({0, 1.98, 0}, 0.4, 0.3, "black").set("light", emission({9, 7, 5}).set("light_samples", 2)));
     s.object(disk({0.5, 1.2, -0.6}, {-1, 0.2, 1}, 0.25, "white").set("light", emission({1, 2, 4}, true)));
-    s.object(sphere({-0.5, 1.4, -0.3}, 0.2, "red").set("light", emission({4, 1, 1})));
+    s.object(sphere({-0.5, 1.4, -0.3}, 0.2, "red").set("light", emission({4, 1, 1}).set("visible_to_camera", false)));
     s.object(
         mesh({{0, 0.9, -0.5}, {0.3, 0.9, -0.4}, {0.1, 1.3, -0.5}, {-0.2, 0.8, -0.2}}, {{0, 1, 2}, {0, 2, 3}}, "white")
             .set("light", emission({0.5, 2, 1})));
     s.light(point_light({0.2, 0.5, 0.8}, 0.3)).light(environment({0.3, 0.4, 0.6}));
+    s.light(directional_light({0.2, -0.3, -1}, {0.5, 0.4, 0.2}).set("angular_diameter", 25.0));
     return s.depth(5);
 }
 
@@ -43,6 +44,20 @@ TEST(Paths, AtDepthOneEqualDirectLight) {
     RenderSettings path = independent(scene), direct = path;
     direct.integrator = IntegratorKind::direct;
     expect_same_means(scene, path, direct);
+}
+
+TEST(Paths, AtDepthOneEqualDirectLightWhereAllLightsAreHidden) {
+    SceneText s = room().depth(1);
+    s.light(
+        directional_light({-0.5, -0.6, -1}, {1, 2, 0.2}).set("angular_diameter", 10.0).set("visible_to_camera", false));
+    s.object(disk({0, 0.2, 0.4}, {0, -1, 0.4}, 0.2, "white")
+                 .set("light", emission({3, 3, 1}, true).set("visible_to_camera", false)));
+    const PreparedCase scene(s.str(), {});
+    RenderSettings path = independent(scene), direct = path, bsdf = path;
+    direct.integrator = IntegratorKind::direct;
+    bsdf.light_sampling = LightSampling::bsdf;
+    expect_same_means(scene, path, direct);
+    expect_same_means(scene, path, bsdf);
 }
 
 TEST(Paths, LightSamplesAloneAgreeWithBoth) {

@@ -353,6 +353,12 @@ TEST(SceneErrors, Lights) {
                   "missing key 'direction' in this directional light");
     refused_light("§{\"type\": \"directional\", \"direction\": [0, -1, 0]}",
                   "missing key 'irradiance' in this directional light");
+    refused_light(
+        "{\"type\": \"directional\", \"direction\": [0, -1, 0], \"irradiance\": 1, §\"visible_to_camera\": false}",
+        "'visible_to_camera' is of no use without 'angular_diameter'");
+    refused_light(
+        "{\"type\": \"directional\", \"direction\": [0, -1, 0], \"irradiance\": 1, \"angular_diameter\": §91}",
+        "'angular_diameter'");
     refused_light("{\"type\": \"directional\", \"irradiance\": 1, \"direction\": §[0, 0, 0]}",
                   "'direction' must not be the zero vector");
     refused_light("{\"type\": \"area\", \"object\": §\"lamp\", \"radiance\": 1}", "there is no object called 'lamp'",

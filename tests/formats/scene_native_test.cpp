@@ -387,6 +387,21 @@ TEST(NativeScene, Lights) {
     EXPECT_EQ(environment.samples, 2u);
 }
 
+TEST(NativeScene, HiddenLightsAndSuns) {
+    const LoadedScene loaded = load_good(scene_with(R"("objects": [
+        {"type": "sphere", "light": {"radiance": 1, "visible_to_camera": false}},
+        {"type": "sphere", "name": "bulb"}], "lights": [
+        {"type": "directional", "direction": [1, -1, 0], "irradiance": 3, "angular_diameter": 0.53, "visible_to_camera": false},
+        {"type": "area", "object": "bulb", "radiance": 2, "visible_to_camera": false},
+        {"type": "environment", "radiance": 1, "visible_to_camera": false}])"));
+    const auto& l = loaded.scene.lights;
+    EXPECT_FALSE(std::get<AreaLight>(l[0]).visible_to_camera);
+    EXPECT_EQ(std::get<DirectionalLight>(l[1]).angular_diameter, 0.53f);
+    EXPECT_FALSE(std::get<DirectionalLight>(l[1]).visible_to_camera);
+    EXPECT_FALSE(std::get<AreaLight>(l[2]).visible_to_camera);
+    EXPECT_FALSE(std::get<EnvironmentLight>(l[3]).visible_to_camera);
+}
+
 /// The flux of a spot is its intensity integrated over directions; here by the midpoint rule over the cosine, with the
 /// smoothstep written out once more.
 TEST(NativeScene, TheFluxOfASpotIsItsIntegratedIntensity) {

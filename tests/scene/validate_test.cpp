@@ -185,6 +185,14 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.lights[0] = DirectionalLight{{0, 0, 0}};
               }},
+        Fault{"angular diameter",
+              [](Scene& s) {
+                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 91};
+              }},
+        Fault{"angular diameter",
+              [](Scene& s) {
+                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan};
+              }},
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
         Fault{"light samples",
               [](Scene& s) {

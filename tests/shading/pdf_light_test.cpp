@@ -20,7 +20,7 @@ using test::World;
 std::optional<double> seen_density(const World& world, const SurfacePoint& from, Vec3 wi, double min_cosine) {
     const Ray ray = spawn_ray(from, wi);
     const Hit hit = world.accel.intersect(ray);
-    if (world.shading.environment) return pdf_light(world.shading, 0, from, wi, nullptr);
+    if (world.shading.environment || !world.shading.suns.empty()) return pdf_light(world.shading, 0, from, wi, nullptr);
     if (!hit.found()) return std::nullopt;
     const SurfacePoint point = surface_at(world.shading, ray, hit);
     if (std::fabs(dot(Vec3d(wi), Vec3d(point.ng))) < min_cosine) return std::nullopt;
@@ -87,6 +87,27 @@ TEST(PdfLight, OfASphereSeenFromItself) {
             ASSERT_TRUE(sample);
             EXPECT_EQ(dot(sample->wi, from.ng) > 0, side < 0);
         }
+}
+
+TEST(PdfLight, OfSunsIntegratesToOne) {
+    for (const float diameter : {1.0f, 20.0f, 90.0f}) {
+        Scene scene;
+        scene.lights = {DirectionalLight{{0.3f, -1, 0.2f}, {1, 2, 3}, diameter}};
+        const World world(std::move(scene));
+        const SurfacePoint from = test::receiver({0, 0, 0}, {0.2f, 1, -0.3f});
+        const double cap = 1.5 * (1 - std::cos(diameter * std::numbers::pi / 360));
+        EXPECT_NEAR(integral(world, from, {-0.3, 1, -0.2}, cap, 0), 1, 3e-3) << diameter;
+        EXPECT_NEAR(share_of_samples(world, from, 0), 1, 1e-3);
+        // Samples are where there is density, and have it.
+        const Sampler sampler(SamplerKind::independent, 3);
+        for (uint64_t i = 0; i < 1000; ++i) {
+            const SampleKey key = sampler.key(0, 0, i);
+            const auto sample = sample_light(world.shading, 0, from, 0, sampler.get_2d(key, 0));
+            ASSERT_TRUE(sample);
+            ASSERT_EQ(sample->pdf, pdf_light(world.shading, 0, from, sample->wi, nullptr));
+            ASSERT_EQ(sample->radiance, sky_radiance(world.shading, sample->wi, true));
+        }
+    }
 }
 
 TEST(PdfLight, OfEnvironmentsIntegratesToOne) {

@@ -58,6 +58,7 @@ private:
         Rgb radiance;
         bool two_sided;
         uint32_t samples;
+        bool visible_to_camera;
     };
     void read_shapes(Value value);
     Geometry read_geometry(ObjectReader& reader, size_t type, const std::string& name);

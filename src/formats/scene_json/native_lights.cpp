@@ -108,6 +108,13 @@ void NativeLoader::read_directional_light(Value value) {
     DirectionalLight light;
     light.direction = read_direction(reader, "direction");
     light.irradiance = reader.color("irradiance", json::kEnergy);
+    if (reader.find("angular_diameter"))
+        light.angular_diameter =
+            reader.number_or("angular_diameter", 0, Range{kMinAngularDiameter, kMaxAngularDiameter});
+    light.visible_to_camera = reader.boolean_or("visible_to_camera", true);
+    if (light.angular_diameter == 0 && reader.find("visible_to_camera"))
+        source_.fail(reader.key_offset("visible_to_camera"),
+                     "'visible_to_camera' is of no use without 'angular_diameter': there is nothing to see");
     reader.finish();
     assets_.add_light(light, name);
 }
@@ -140,6 +147,7 @@ void NativeLoader::read_environment_light(Value value) {
     const Rgb radiance = reader.color_or("radiance", {1, 1, 1}, json::kEnergy);
     light.radiance = radiance * reader.number_or("scale", 1, Range{0, 1e8});
     light.samples = static_cast<uint32_t>(reader.integer_or("light_samples", 1, 1, kMaxLightSamples));
+    light.visible_to_camera = reader.boolean_or("visible_to_camera", true);
     if (reader.find("path")) {
         const NamedPath path = read_path(reader);
         light.rotation = reader.number_or("rotation", 0, json::kAnyAngle);

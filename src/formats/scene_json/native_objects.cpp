@@ -154,13 +154,15 @@ NativeLoader::Emission NativeLoader::read_emission(ObjectReader& reader) const {
     emission.radiance = reader.color("radiance", json::kEnergy);
     emission.two_sided = reader.boolean_or("two_sided", false);
     emission.samples = static_cast<uint32_t>(reader.integer_or("light_samples", 1, 1, kMaxLightSamples));
+    emission.visible_to_camera = reader.boolean_or("visible_to_camera", true);
     return emission;
 }
 
 void NativeLoader::make_emitters(InstanceRange range, const Emission& emission, const std::string& name) {
     for (uint32_t i = 0; i < range.count; ++i)
-        assets_.add_light(
-            AreaLight{InstanceId(range.first + i), emission.radiance, emission.two_sided, emission.samples}, name);
+        assets_.add_light(AreaLight{InstanceId(range.first + i), emission.radiance, emission.two_sided,
+                                    emission.samples, emission.visible_to_camera},
+                          name);
 }
 
 void NativeLoader::read_object(Value value) {
