@@ -69,7 +69,7 @@ private:
         put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color);
         put(m.fuzz_weight, m.fuzz_color, m.fuzz_roughness);
         put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
-        put(m.geometry_opacity);
+        put(m.geometry_opacity, m.geometry_opacity_cutoff);
     }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
@@ -88,7 +88,7 @@ private:
     void put(const Disk& d) { put(d.center, d.normal, d.radius); }
     void put(const Instance& i) { put(i.shape, i.material, i.world_from_object); }
     void put(const PointLight& l) { put(l.position, l.intensity); }
-    void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle); }
+    void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle, l.falloff); }
     void put(const DirectionalLight& l) { put(l.direction, l.irradiance); }
     void put(const AreaLight& l) { put(l.instance, l.radiance, l.two_sided, l.samples); }
     void put(const EnvironmentLight& l) {
