@@ -106,7 +106,7 @@ void write_sample(JsonWriter& w, const RenderOptions& o, const PixelSample& s) {
 }
 
 void print_json(const RenderOptions& o, const RenderSettings& s, const RenderResult& r,
-                const std::vector<std::string>& written, const Diagnostics& diagnostics) {
+                const std::vector<std::string>& written, const Diagnostics& diagnostics, const Diagnostics& fidelity) {
     rapidjson::StringBuffer buffer;
     JsonWriter w(buffer);
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
@@ -137,9 +137,11 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     w.Key("outputs"), w.StartArray();
     for (const std::string& path : written) write_text(w, path);
     w.EndArray();
-    w.Key("warnings"), w.StartArray();
-    for (const Warning& warning : diagnostics.warnings()) write_text(w, warning.str());
-    w.EndArray();
+    for (const auto& [key, list] : {std::pair("warnings", &diagnostics), std::pair("not_honoured", &fidelity)}) {
+        w.Key(key), w.StartArray();
+        for (const Warning& warning : list->warnings()) write_text(w, warning.str());
+        w.EndArray();
+    }
     w.EndObject();
     std::cout << buffer.GetString() << '\n';
 }
@@ -170,6 +172,17 @@ void print_fireflies(const RenderOptions& o, const RenderStatistics& s) {
     for (const PixelSample& f : s.fireflies)
         std::cerr << fmt::format("firefly ({}, {}, {}): {}\n", f.value.r, f.value.g, f.value.b,
                                  replay_command(o.scene, o.settings, f));
+}
+
+/// What the file asks for and the picture does not show.
+void print_fidelity(const Diagnostics& fidelity) {
+    if (fidelity.empty()) return;
+    std::cerr << "not honoured:\n";
+    for (const Warning& w : fidelity.warnings()) {
+        const std::string place = w.where.str();
+        std::cerr << fmt::format("  {}{}{}\n", w.message, place.empty() ? "" : ": " + place,
+                                 w.count > 1 ? fmt::format(" ({} times)", w.count) : std::string());
+    }
 }
 
 /// Shows how the hierarchy gets on; render_failed when a signal came.
@@ -214,14 +227,17 @@ std::vector<std::string> write_outputs(const RenderOptions& o, const Image& imag
 }
 
 /// What there is to say and to save once the picture is there.
-int finish(const RenderOptions& o, const RenderSettings& settings, const RenderResult& result,
-           Diagnostics diagnostics) {
+int finish(const RenderOptions& o, const RenderSettings& settings, const RenderResult& result, Diagnostics diagnostics,
+           const Diagnostics& fidelity) {
     Diagnostics afterwards;
     warn_bad_samples(o, result.statistics, afterwards);
     const std::vector<std::string> written = write_outputs(o, result.image, afterwards);
-    if (!o.quiet) report(afterwards), print_summary(settings, result, written), print_fireflies(o, result.statistics);
+    if (!o.quiet) {
+        report(afterwards), print_summary(settings, result, written), print_fireflies(o, result.statistics);
+        print_fidelity(fidelity);
+    }
     diagnostics.append(afterwards);
-    if (o.json) print_json(o, settings, result, written, diagnostics);
+    if (o.json) print_json(o, settings, result, written, diagnostics, fidelity);
     if (auto status = finish_stdout(); !status) return report(status.error());
     if (written.size() < o.outputs.size()) return kResources;
     const int signal = g_signal.load();
@@ -249,10 +265,12 @@ int run_render(const RenderOptions& given) {
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     const auto said = parse_overrides(o.settings, o.execution);
     if (!said) return report(said.error());
+    const auto loading = load_options(o.settings);
+    if (!loading) return report(loading.error());
 
     const uint32_t threads = o.execution.threads ? o.execution.threads : hardware_threads();
     const ThreadLimit limit(std::min(threads, kMaxThreads));
-    auto loaded = load_scene(o.scene);
+    auto loaded = load_scene(o.scene, *loading);
     if (!loaded) return report(loaded.error());
     if (auto status = check_not_inputs(o.outputs, loaded->files); !status) return report(status.error());
     auto settings = settings_for(o.settings, *said, *loaded);
@@ -269,14 +287,15 @@ int run_render(const RenderOptions& given) {
     const auto result = run_job(o, std::move(*scene), *settings, signals);
     if (!result) return report(result.error());
     if (g_signal != 0 && result->max_samples == 0) return stopped_early("before the first samples were done");
-    return finish(o, *settings, *result, std::move(diagnostics));
+    return finish(o, *settings, *result, std::move(diagnostics), loaded->fidelity);
 }
 
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
     auto o = std::make_shared<RenderOptions>();
-    CLI::App* c = add_command(app, action, "render", "Render a scene (.json) or a model (.obj, .ply)", o, run_render);
+    CLI::App* c = add_command(app, action, "render", "Render a scene (.json, .gltf, .glb) or a model (.obj, .ply)", o,
+                              run_render);
     c->footer(
         "What is not given comes from the scene file, and what that does not say is 512x512 pixels with 64 samples.\n"
         "A model without a scene gets a camera that frames it and a neutral studio light. Ctrl-C stops and writes "

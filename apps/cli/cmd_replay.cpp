@@ -76,8 +76,10 @@ int run_replay(const ReplayOptions& o) {
     execution.threads = 1;
     const auto said = parse_overrides(o.settings, execution);
     if (!said) return report(said.error());
+    const auto loading = load_options(o.settings);
+    if (!loading) return report(loading.error());
     const ThreadLimit limit(std::min(hardware_threads(), kMaxThreads));
-    auto loaded = load_scene(o.scene);
+    auto loaded = load_scene(o.scene, *loading);
     if (!loaded) return report(loaded.error());
     const auto settings = settings_for(o.settings, *said, *loaded);
     if (!settings) return report(settings.error());

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <limits>
 
 #include "base/names.h"
 #include "base/text.h"
+#include "math/vector.h"
 #include "render/memory_estimate.h"
 #include "scene/validate.h"
 
@@ -28,6 +30,8 @@ std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char s
 }
 
 namespace {
+
+constexpr std::array<std::string_view, 2> kLightUnits{"radiometric", "photometric"};
 
 Result<Filter> parse_filter(const std::string& text) {
     const size_t colon = text.find(':');
@@ -52,6 +56,21 @@ Result<Crop> parse_crop(const std::string& text) {
     const Crop c{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
     if (c.x0 >= c.x1 || c.y0 >= c.y1) return usage_error(fmt::format("--crop: {} is an empty window", text));
     return c;
+}
+
+/// Three numbers between commas.
+std::optional<Rgb> parse_color(std::string_view text) {
+    Rgb out;
+    for (int c = 0; c < 3; ++c) {
+        const size_t end = c < 2 ? text.find(',') : text.size();
+        if (end == text.npos) return std::nullopt;
+        const auto value = parse_double(text.substr(0, end));
+        constexpr double kMax = 1e30;
+        if (!value || !(*value >= 0 && *value <= kMax)) return std::nullopt;
+        out[c] = static_cast<float>(*value);
+        text.remove_prefix(min_of(end + 1, text.size()));
+    }
+    return out;
 }
 
 Status parse_size(const std::string& text, Overrides& said) {
@@ -81,6 +100,28 @@ void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s
 }
 
 }  // namespace
+
+Result<LoadOptions> load_options(const SettingsOptions& o) {
+    LoadOptions out;
+    if (o.allow_outside_paths) out.allow_outside_paths = true;
+    out.gltf_variant = o.variant;
+    if (o.light_units == kLightUnits[1]) out.gltf_light_units = GltfLightUnits::photometric;
+    EnvironmentOptions& environment = out.environment;
+    if (o.environment == "none") {
+        environment.replace = EnvironmentOptions::None{};
+    } else if (const auto color = parse_color(o.environment)) {
+        environment.replace = *color;
+    } else if (!o.environment.empty()) {
+        if (!is_picture(o.environment))
+            return usage_error(fmt::format("--env: '{}' is neither 'none' nor a radiance R,G,B nor a picture",
+                                           escape_for_display(o.environment)),
+                               "for example --env sky.hdr, or --env 0.5,0.5,0.5");
+        environment.replace = o.environment;
+    }
+    if (o.environment_rotation) environment.rotation = static_cast<float>(*o.environment_rotation);
+    if (o.environment_scale) environment.scale = static_cast<float>(*o.environment_scale);
+    return out;
+}
 
 Result<Overrides> parse_overrides(const SettingsOptions& o, const Execution& execution) {
     Overrides said;
@@ -170,6 +211,12 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     word("--size", o.size);
     word("--crop", o.crop);
     word("--camera", o.camera);
+    word("--env", o.environment);
+    number("--env-rotate", o.environment_rotation);
+    number("--env-scale", o.environment_scale);
+    if (o.allow_outside_paths) out += " --allow-outside-paths";
+    word("--variant", o.variant);
+    word("--gltf-light-units", o.light_units);
     word("--integrator", o.integrator);
     number("--max-depth", o.max_depth);
     word("--light-sampling", o.light_sampling);
@@ -194,6 +241,27 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
         ->type_name("X0,Y0,X1,Y1")
         ->group("Picture");
     c->add_option("--camera", options.camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
+    c->add_option("--env", options.environment,
+                  "What shines from far away, in place of the scene's own and of the studio of a bare model: none, a\n"
+                  "radiance R,G,B, or a latitude-longitude picture (HDR, EXR, PFM, PNG, JPEG)")
+        ->type_name("WHAT")
+        ->group("Picture");
+    constexpr double kMaxTurn = 1e6, kMaxScale = 1e15;
+    add_real(c, "--env-rotate", options.environment_rotation, -kMaxTurn, kMaxTurn,
+             "Degrees by which the environment is turned about +Y, counter-clockwise seen from above")
+        ->group("Picture");
+    add_real(c, "--env-scale", options.environment_scale, 0, kMaxScale, "Factor of the environment's radiance")
+        ->group("Picture");
+    c->add_flag("--allow-outside-paths", options.allow_outside_paths,
+                "Let a glTF file name files outside its own folder")
+        ->group("Picture");
+    c->add_option("--variant", options.variant, "Which of the variants of a glTF file's materials, by name")
+        ->type_name("NAME")
+        ->group("Picture");
+    add_choice(c, "--gltf-light-units", options.light_units, kLightUnits,
+               "How a glTF file's lights are meant: radiometric (W/sr and W/m², the default) or photometric (683\n"
+               "times that, of exporters that turn watts into lumens)")
+        ->group("Picture");
     add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(),
                "path: all light; direct: what arrives without detours; ao: ambient occlusion. To look at a scene:\n"
                "normals, albedo, uv, depth (metres), primitive (a colour each)")

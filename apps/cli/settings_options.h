@@ -17,6 +17,10 @@ struct SettingsOptions {
     std::optional<uint32_t> max_depth, roulette_depth;
     std::optional<float> clamp, ao_distance;
     std::string size, camera, integrator, light_sampling, light_choice, filter, sampler, crop;
+    std::string environment;
+    std::optional<double> environment_rotation, environment_scale;
+    bool allow_outside_paths = false;
+    std::string variant, light_units;
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);
 
@@ -30,6 +34,9 @@ struct Overrides {
 
 /// Whole numbers between separators, exactly `count` of them.
 std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char separator, size_t count);
+
+/// How the scene is to be loaded.
+Result<LoadOptions> load_options(const SettingsOptions& options);
 
 /// Parses, and refuses what no scene could make right: loading one may take long.
 Result<Overrides> parse_overrides(const SettingsOptions& options, const Execution& execution);

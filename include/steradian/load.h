@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "steradian/image.h"
@@ -13,12 +15,30 @@
 
 namespace steradian {
 
+/// What shines from far away. All of it applies to scenes of every format alike.
+struct EnvironmentOptions {
+    struct None {};
+    /// In place of what the scene has, and of the studio that a bare model gets: nothing, a constant radiance, or a
+    /// latitude-longitude picture (a path that is relative to the working folder). Not set: as the scene has it.
+    std::optional<std::variant<None, Rgb, std::string>> replace = std::nullopt;
+    float rotation = 0;  ///< degrees about +Y, added to what the scene says; counter-clockwise seen from above
+    float scale = 1;     ///< of the radiance, >= 0
+};
+
+/// How the numbers of lights in glTF files are meant: as W/sr and W/m² in place of candela and lux, or as 683 times
+/// that, which is what exporters write that turn watts into lumens.
+enum class GltfLightUnits : uint8_t { radiometric, photometric };
+
 struct LoadOptions {
     uint64_t max_file_bytes = uint64_t(4) << 30;  ///< of one file
     ImageLimits images{};
     uint32_t max_depth = 256;  ///< of nested JSON
-    /// Assets may be named by absolute paths or leave the scene's folder through "..".
-    bool allow_outside_paths = true;
+    /// Whether assets may be named by absolute paths or leave the scene's folder through "..". Not set: as the format
+    /// has it, which is not in glTF and yes in all others.
+    std::optional<bool> allow_outside_paths = std::nullopt;
+    EnvironmentOptions environment{};
+    GltfLightUnits gltf_light_units = GltfLightUnits::radiometric;
+    std::string gltf_variant = {};  ///< of KHR_materials_variants, by name; empty: none
 };
 
 /// What a file says: the scene, and the settings that it asks for (defaults where it is silent).
@@ -26,12 +46,14 @@ struct LoadedScene {
     Scene scene;
     RenderSettings settings;
     Diagnostics diagnostics;
+    /// What the file asks for and the picture will not show, or show differently.
+    Diagnostics fidelity;
     /// Every file that was read, the scene itself first: outputs must not be among them.
     std::vector<std::string> files;
 };
 
-/// By extension: .json (Steradian's own format and the course vocabulary), .obj, .ply. A bare model gets a camera that
-/// frames it and a neutral studio light.
+/// By extension: .json (Steradian's own format and the course vocabulary), .gltf, .glb, .obj, .ply. A model without a
+/// camera gets one that frames it; where nothing shines there is a neutral studio light.
 Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& options = {});
 
 /// A JSON scene from memory; relative paths resolve against `base_folder`. `name` stands for the file in messages.

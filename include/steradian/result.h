@@ -18,14 +18,17 @@ enum class ErrorCode : uint8_t {
     resources,      ///< disk, memory or a documented limit (exit code 4)
 };
 
-/// A place in a file. Text files have line and column (1-based, column in bytes), binary files a byte offset.
+/// A place in a file. Text files have line and column (1-based, column in bytes), binary files a byte offset; of glTF
+/// also what stands there.
 struct SourceLocation {
     std::string file;
     uint32_t line = 0;    ///< 0: unknown
     uint32_t column = 0;  ///< 0: unknown
-    std::optional<uint64_t> byte;
+    std::optional<uint64_t> byte = std::nullopt;
+    std::string pointer = {};  ///< JSON pointer (RFC 6901); empty: unknown
 
-    /// "file:line:column", "file: byte 17" or "file"; empty when nothing is known. Control characters are escaped.
+    /// "file:line:column", "file: byte 17" or "file", perhaps with " (/a/json/pointer)"; empty when nothing is known.
+    /// Control characters are escaped.
     std::string str() const;
 };
 

@@ -180,6 +180,7 @@ struct OpenPbrMaterial {
     float coat_ior = 1.6f;  ///< at least 1
     float coat_darkening = 1;
     FloatInput geometry_opacity{1};
+    float geometry_opacity_cutoff = 0;  ///< above 0: an opacity below it counts as 0, any other as 1
 };
 
 /// Two materials on one surface: what scatters is (1 - weight) of the first and weight of the second, each with its own
@@ -262,13 +263,18 @@ struct PointLight {
     Rgb intensity{1, 1, 1};  ///< W/sr; a flux Φ is Φ / 4π
 };
 
-/// Smoothstep falloff in the cosine between the two cone angles, zero outside the outer one.
+/// Between the two cone angles of a spot, with x in the cosine of the angle, from 0 at the outer to 1 at the inner one:
+/// smoothstep, x² (3 - 2x), or as glTF has it (KHR_lights_punctual), x².
+enum class SpotFalloff : uint8_t { smoothstep, squared };
+
+/// Zero outside the outer cone.
 struct SpotLight {
     Vec3 position;
     Vec3 direction{0, -1, 0};  ///< where it points
     Rgb intensity{1, 1, 1};    ///< W/sr inside the inner cone
     float inner_angle = 30;    ///< half angle, degrees, [0, outer_angle]
     float outer_angle = 45;    ///< half angle, degrees, (0, 180]
+    SpotFalloff falloff = SpotFalloff::smoothstep;
 };
 
 /// From infinitely far. With an angular diameter it is a disc of even radiance in the sky, which camera rays and

@@ -12,6 +12,7 @@ std::string SourceLocation::str() const {
     if (line) out.append(":").append(std::to_string(line));
     if (line && column) out.append(":").append(std::to_string(column));
     if (byte) out.append(": byte ").append(std::to_string(*byte));
+    if (!pointer.empty()) out.append(" (").append(escape_for_display(pointer)).append(")");
     return out;
 }
 

@@ -79,7 +79,7 @@ Result<std::string> Assets::resolve(std::string_view named) const {
     std::string path(named);
     if (named.front() != '/' && !base_folder_.empty())
         path = base_folder_ + (base_folder_.back() == '/' ? "" : "/") + path;
-    if (!options_.allow_outside_paths) {
+    if (!options_.allow_outside_paths.value_or(true)) {
         if (named.front() == '/')
             return path_error("the path '" + escape_for_display(named) + "' is absolute",
                               "paths outside the scene's folder are not allowed here");
@@ -190,7 +190,7 @@ Result<MaterialId> Assets::convert(const MeshMaterial& from) {
 
     // The mesh reader resolved it against the MTL file's folder.
     if (has_scheme(from.diffuse_map)) return address_error(from.diffuse_map);
-    if (!options_.allow_outside_paths)
+    if (!options_.allow_outside_paths.value_or(true))
         if (auto inside = check_inside(from.diffuse_map); !inside) return std::move(inside).error();
     auto texels = open_image(from.diffuse_map);
     if (!texels) {
@@ -211,6 +211,10 @@ Result<MaterialId> Assets::convert(const MeshMaterial& from) {
 MaterialId Assets::add_diffuse(Rgb reflectance, bool two_sided, std::string name) {
     const TextureId texture = add_texture(ConstantTexture{reflectance}, name);
     return add_material(DiffuseMaterial{texture, two_sided}, std::move(name));
+}
+
+ImageId Assets::add_image(RawImage image, std::string name) {
+    return ImageId(add_named(loaded_.scene.images, loaded_.scene.names.images, std::move(image), name));
 }
 
 TextureId Assets::add_texture(Texture texture, std::string name) {

@@ -66,6 +66,7 @@ public:
     Result<InstanceRange> place(size_t model, const Placement& placement);
 
     MaterialId add_diffuse(Rgb reflectance, bool two_sided, std::string name);
+    ImageId add_image(RawImage image, std::string name);
     TextureId add_texture(Texture texture, std::string name);
     MaterialId add_material(Material material, std::string name);
     ShapeId add_shape(Shape shape, std::string name);

@@ -6,9 +6,11 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "formats/assets.h"
+#include "formats/gltf/gltf.h"
 #include "formats/json/reader.h"
 #include "formats/scene_json/common.h"
 #include "formats/studio.h"
+#include "image/decode.h"
 
 namespace steradian {
 namespace {
@@ -70,6 +72,25 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
     return loaded;
 }
 
+/// A model without a camera gets one; one that nothing shines on gets the studio, unless the caller chose what is
+/// around it. An author's own camera may stand below the model, so then there is no floor.
+void complete(LoadedScene& loaded, Assets& assets, const LoadOptions& options) {
+    const bool dark = loaded.scene.lights.empty() && !options.environment.replace;
+    const bool framed = loaded.scene.cameras.empty();
+    if (framed) add_framing_camera(loaded, assets);
+    if (dark) add_studio(loaded, assets, framed);
+}
+
+void remove_environment(Scene& scene) {
+    for (size_t i = scene.lights.size(); i-- > 0;) {
+        if (!std::holds_alternative<EnvironmentLight>(scene.lights[i])) continue;
+        const auto at = static_cast<std::ptrdiff_t>(i);
+        scene.lights.erase(scene.lights.begin() + at);
+        std::vector<std::string>& names = scene.names.lights;
+        if (i < names.size()) names.erase(names.begin() + at);
+    }
+}
+
 std::string nothing_to_render(const Model& model) {
     const std::string faces = std::to_string(model.dropped_faces);
     if (model.dropped_faces == 0) return "the model has no faces, there is nothing to render";
@@ -91,15 +112,56 @@ Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& 
     const auto placed = assets.place(*model, {});
     if (!placed) return about_the_model(placed.error());
     if (placed->count == 0) return about_file(path, ErrorCode::bad_input, nothing_to_render(assets.model(*model)));
-    add_studio(loaded, assets);
+    complete(loaded, assets, options);
     return loaded;
+}
+
+Result<LoadedScene> load_gltf_file(const std::string& path, const LoadOptions& options) {
+    const auto bytes = read_file(path, options.max_file_bytes);
+    if (!bytes) return bytes.error();
+    const std::string folder = folder_of_file(path);
+    LoadedScene loaded = gltf::load(*bytes, path, folder, options);
+    loaded.files.insert(loaded.files.begin(), path);
+    Assets assets(loaded, folder, options);
+    complete(loaded, assets, options);
+    return loaded;
+}
+
+/// What the caller wants to shine from far away.
+Status apply_environment(LoadedScene& loaded, const LoadOptions& options) {
+    const EnvironmentOptions& wanted = options.environment;
+    Assets assets(loaded, {}, options);
+    if (wanted.replace) {
+        remove_environment(loaded.scene);
+        EnvironmentLight light;
+        if (const auto* path = std::get_if<std::string>(&*wanted.replace)) {
+            auto texels = read_texels(*path, options.images);
+            if (!texels) return std::move(texels).error();
+            loaded.files.push_back(*path);
+            light.image = assets.add_image(std::move(*texels), *path);
+            light.color_space = assets.default_color_space(*light.image);
+        } else if (const auto* radiance = std::get_if<Rgb>(&*wanted.replace)) {
+            light.radiance = *radiance;
+        }
+        if (!std::holds_alternative<EnvironmentOptions::None>(*wanted.replace)) assets.add_light(light, "environment");
+    }
+    for (Light& light : loaded.scene.lights)
+        if (auto* environment = std::get_if<EnvironmentLight>(&light)) {
+            environment->rotation += wanted.rotation;
+            environment->radiance = environment->radiance * wanted.scale;
+        }
+    return Ok{};
 }
 
 struct Format {
     std::string_view extension;
     Result<LoadedScene> (*load)(const std::string& path, const LoadOptions& options);
 };
-constexpr Format kFormats[] = {{".json", load_json_file}, {".obj", load_model_file}, {".ply", load_model_file}};
+constexpr Format kFormats[] = {{".json", load_json_file},
+                               {".gltf", load_gltf_file},
+                               {".glb", load_gltf_file},
+                               {".obj", load_model_file},
+                               {".ply", load_model_file}};
 
 /// The one place where what readers throw becomes a value.
 template <class Load>
@@ -122,7 +184,13 @@ Result<LoadedScene> guarded(const std::string& name, Load load) {
 Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& options) {
     const std::string extension = extension_of(path);
     for (const Format& format : kFormats)
-        if (format.extension == extension) return guarded(path, [&] { return format.load(path, options); });
+        if (format.extension == extension)
+            return guarded(path, [&]() -> Result<LoadedScene> {
+                auto loaded = format.load(path, options);
+                if (loaded)
+                    if (Status status = apply_environment(*loaded, options); !status) return std::move(status).error();
+                return loaded;
+            });
     std::vector<std::string_view> known;
     for (const Format& format : kFormats) known.push_back(format.extension);
     const std::string message = extension.empty()

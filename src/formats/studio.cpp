@@ -1,20 +1,57 @@
 #include "formats/studio.h"
 
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "math/elementary.h"
 #include "math/ray.h"
+#include "math/transform.h"
 #include "math/vector.h"
 
 namespace steradian {
 namespace {
 
+struct Box {
+    Vec3d lo{kMaxCoordinate, kMaxCoordinate, kMaxCoordinate}, hi = -lo;
+
+    void add(Vec3d p) {
+        lo = {min_of(lo.x, p.x), min_of(lo.y, p.y), min_of(lo.z, p.z)};
+        hi = {max_of(hi.x, p.x), max_of(hi.y, p.y), max_of(hi.z, p.z)};
+    }
+    bool empty() const { return !(lo.x <= hi.x); }
+    Vec3d corner(int i) const { return {i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}; }
+};
+
 /// Calls `visit` for every vertex that a triangle uses and that can be rendered.
 template <class Visit>
-void each_vertex(const Scene& scene, Visit visit) {
-    for (const Mesh& mesh : scene.meshes)
-        for (const uint32_t i : mesh.indices)
-            if (usable_position(mesh.positions[i])) visit(Vec3d(mesh.positions[i]));
+void each_vertex(const Mesh& mesh, Visit visit) {
+    for (const uint32_t i : mesh.indices)
+        if (usable_position(mesh.positions[i])) visit(Vec3d(mesh.positions[i]));
+}
+
+/// Calls `visit` for points in the world that no mesh of the scene reaches beyond.
+template <class Visit>
+void each_point(const Scene& scene, Visit visit) {
+    std::vector<uint32_t> users(scene.meshes.size());
+    std::vector<std::optional<Box>> boxes(scene.meshes.size());
+    const auto mesh_of = [&](const Instance& i) { return std::get_if<MeshId>(&scene.shapes[index(i.shape)]); };
+    for (const Instance& i : scene.instances)
+        if (const MeshId* id = mesh_of(i)) ++users[index(*id)];
+    for (const Instance& i : scene.instances) {
+        const MeshId* id = mesh_of(i);
+        if (!id) continue;
+        const Mesh& mesh = scene.meshes[index(*id)];
+        const bool stays = is_identity(i.world_from_object);
+        const auto place = [&](Vec3d p) { visit(stays ? p : transform_point(i.world_from_object, p)); };
+        if (users[index(*id)] == 1) {
+            each_vertex(mesh, place);
+            continue;
+        }
+        std::optional<Box>& box = boxes[index(*id)];
+        if (!box) each_vertex(mesh, [&, &b = box.emplace()](Vec3d p) { b.add(p); });
+        for (int corner = 0; corner < 8 && !box->empty(); ++corner) place(box->corner(corner));
+    }
 }
 
 /// Where the model is: the middle of its bounding box, half the box's diagonal, its lowest height.
@@ -25,17 +62,12 @@ struct Extent {
 
 /// A lone point gets a ball that it can be seen in.
 Extent extent_of(const Scene& scene) {
-    Vec3d lo{kMaxCoordinate, kMaxCoordinate, kMaxCoordinate}, hi = -lo;
-    bool any = false;
-    each_vertex(scene, [&](Vec3d p) {
-        any = true;
-        lo = {min_of(lo.x, p.x), min_of(lo.y, p.y), min_of(lo.z, p.z)};
-        hi = {max_of(hi.x, p.x), max_of(hi.y, p.y), max_of(hi.z, p.z)};
-    });
-    if (!any) return {};
-    const Vec3d center = (lo + hi) * 0.5;
+    Box box;
+    each_point(scene, [&](Vec3d p) { box.add(p); });
+    if (box.empty()) return {};
+    const Vec3d center = (box.lo + box.hi) * 0.5;
     const double smallest = max_of(1e-6 * length(center), 1e-12);
-    return {center, max_of(length(hi - lo) * 0.5, smallest), lo.y};
+    return {center, max_of(length(box.hi - box.lo) * 0.5, smallest), box.lo.y};
 }
 
 /// The axes of a view: to the right, upwards, and back towards the camera.
@@ -53,7 +85,7 @@ struct ViewAxes {
 /// |p - c| <= slope (d - z), so that the largest p + slope z and -p + slope z give the place c and the distance d.
 PerspectiveCamera frame(const Scene& scene, const Extent& extent, const ViewAxes& axes, double slope) {
     Vec3d high{-kInfinity, -kInfinity, -kInfinity}, low = high;
-    each_vertex(scene, [&](Vec3d p) {
+    each_point(scene, [&](Vec3d p) {
         const Vec3d q = p - extent.center;
         const double x = dot(q, axes.right), y = dot(q, axes.up), z = dot(q, axes.back);
         high = {max_of(high.x, x + slope * z), max_of(high.y, y + slope * z), max_of(high.z, z)};
@@ -78,17 +110,8 @@ Rectangle softbox(const Extent& extent, Vec3d towards, double distance, double h
     return r;
 }
 
-}  // namespace
-
-void add_studio(LoadedScene& loaded, Assets& assets) {
-    constexpr double kFieldOfView = 25, kFilled = 0.86;
-    const Extent extent = extent_of(loaded.scene);
-    const double slope = kFilled * math::tan(kFieldOfView * std::numbers::pi / 360);
-    PerspectiveCamera camera = frame(loaded.scene, extent, ViewAxes({0.5, 0.42, 1}), slope);
-    camera.vertical_fov = static_cast<float>(kFieldOfView);
-    assets.add_camera(camera, "camera");
-
-    // A hair below the model, so that a flat underside does not lie in the floor itself.
+/// A hair below the model, so that a flat underside does not lie in the floor itself.
+void add_floor(const Extent& extent, Assets& assets) {
     constexpr double kFloorRadius = 60, kGap = 2e-3;
     Disk floor;
     floor.center = Vec3(Vec3d{extent.center.x, extent.floor - kGap * extent.radius, extent.center.z});
@@ -96,7 +119,22 @@ void add_studio(LoadedScene& loaded, Assets& assets) {
     floor.radius = static_cast<float>(min_of<double>(kFloorRadius * extent.radius, kMaxCoordinate));
     const MaterialId grey = assets.add_diffuse({0.3f, 0.31f, 0.33f}, true, "floor");
     assets.add_instance({assets.add_shape(floor, "floor"), grey, Affine{}}, "floor");
+}
 
+}  // namespace
+
+void add_framing_camera(const LoadedScene& loaded, Assets& assets) {
+    constexpr double kFieldOfView = 25, kFilled = 0.86;
+    const Extent extent = extent_of(loaded.scene);
+    const double slope = kFilled * math::tan(kFieldOfView * std::numbers::pi / 360);
+    PerspectiveCamera camera = frame(loaded.scene, extent, ViewAxes({0.5, 0.42, 1}), slope);
+    camera.vertical_fov = static_cast<float>(kFieldOfView);
+    assets.add_camera(camera, "camera");
+}
+
+void add_studio(const LoadedScene& loaded, Assets& assets, bool floor) {
+    const Extent extent = extent_of(loaded.scene);
+    if (floor) add_floor(extent, assets);
     const auto add_softbox = [&](const Rectangle& shape, Rgb radiance, const std::string& name) {
         const InstanceId instance =
             assets.add_instance({assets.add_shape(shape, name), assets.default_material(true), Affine{}}, name);

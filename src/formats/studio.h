@@ -5,11 +5,15 @@
 
 namespace steradian {
 
-/// A photographer's table. The camera looks from the front right and above, through a long lens (a vertical field of
-/// view of 25°), from the nearest place where a square picture holds every vertex with 14 % to spare; wider pictures
-/// show more at the sides. The model stands on a wide grey floor that fills the rest of the picture. Light comes from a
-/// warm softbox on the left, a weaker and cooler one behind on the right, and a grey environment. Everything scales
-/// with the model, so that its size does not change the picture.
-void add_studio(LoadedScene& loaded, Assets& assets);
+// A photographer's table. Everything scales with the model, so that its size does not change the picture. Of meshes
+// that several objects share the corners of their boxes count, of all others every vertex.
+
+/// The camera looks from the front right and above, through a long lens (a vertical field of view of 25°), from the
+/// nearest place where a square picture holds every vertex with 14 % to spare; wider pictures show more at the sides.
+void add_framing_camera(const LoadedScene& loaded, Assets& assets);
+
+/// The model stands on a wide grey floor, where there is one. Light comes from a warm softbox on the left, a weaker and
+/// cooler one behind on the right, and a grey environment.
+void add_studio(const LoadedScene& loaded, Assets& assets, bool floor);
 
 }  // namespace steradian

@@ -73,7 +73,7 @@ private:
         put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color);
         put(m.fuzz_weight, m.fuzz_color, m.fuzz_roughness);
         put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
-        put(m.geometry_opacity);
+        put(m.geometry_opacity, m.geometry_opacity_cutoff);
     }
     void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const BumpMap& m) { put(m.texture, m.scale); }
@@ -97,7 +97,7 @@ private:
     void put(const Disk& d) { put(d.center, d.normal, d.radius); }
     void put(const Instance& i) { put(i.shape, i.material, i.world_from_object); }
     void put(const PointLight& l) { put(l.position, l.intensity); }
-    void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle); }
+    void put(const SpotLight& l) { put(l.position, l.direction, l.intensity, l.inner_angle, l.outer_angle, l.falloff); }
     void put(const DirectionalLight& l) { put(l.direction, l.irradiance, l.angular_diameter, l.visible_to_camera); }
     void put(const AreaLight& l) { put(l.instance, l.radiance, l.two_sided, l.samples, l.visible_to_camera); }
     void put(const EnvironmentLight& l) {

@@ -142,6 +142,7 @@ private:
         unit(m.coat_weight, weights);
         unit(m.coat_darkening, "coat_darkening must be between 0 and 1");
         unit(m.geometry_opacity, "geometry_opacity must be between 0 and 1");
+        unit(m.geometry_opacity_cutoff, "geometry_opacity_cutoff must be between 0 and 1");
         const char* roughness = "roughnesses and anisotropies must be between 0 and 1";
         unit(m.specular_roughness, roughness);
         for (const float r : {m.base_diffuse_roughness, m.specular_roughness_anisotropy, m.fuzz_roughness,

@@ -222,6 +222,34 @@ Result<Document> Document::parse(std::string_view text, const std::string& name,
     return document;
 }
 
+std::string Document::pointer(size_t offset) const {
+    std::string out;
+    Value value = root();
+    while (true) {
+        // Of the children, which stand in the order of the text, the last one that does not begin behind the offset.
+        std::optional<Value> inside;
+        std::string token;
+        if (value.is(Kind::object)) {
+            for (const Member member : value.members()) {
+                if (member.key_offset > offset) break;
+                inside = member.value;
+                token = member.key;
+            }
+        } else if (value.is(Kind::array)) {
+            size_t i = 0;
+            for (const Value element : value.elements()) {
+                if (element.offset() > offset) break;
+                inside = element;
+                token = std::to_string(i++);
+            }
+        }
+        if (!inside || offset == value.offset()) return out;
+        out += '/';
+        for (const char c : token) c == '~' ? out += "~0" : c == '/' ? out += "~1" : out += c;
+        value = *inside;
+    }
+}
+
 std::optional<Document::Duplicate> Document::duplicate_key() const {
     std::optional<Duplicate> found;
     std::vector<Member> members;

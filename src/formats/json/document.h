@@ -114,6 +114,9 @@ public:
     Value root() const noexcept { return Value(*this, 0); }
     /// What was parsed, without a byte order mark: offsets count from its start.
     std::string_view text() const noexcept { return text_; }
+    /// The JSON pointer (RFC 6901) of the innermost value that a byte of the text is part of; a key belongs to its
+    /// value. "" is the root. Takes time in proportion to the sizes of the containers on the way.
+    std::string pointer(size_t offset) const;
 
     struct Duplicate {
         std::string_view key;

@@ -55,6 +55,8 @@ std::string describe(Value value) {
 }
 
 SourceLocation Source::where(size_t offset) const {
+    const std::string pointer = pointers_ ? pointers_->pointer(offset) : std::string();
+    if (begin_) return {name_, 0, 0, *begin_ + offset, pointer};
     if (line_starts_.empty()) {
         line_starts_.push_back(0);
         for (size_t i = 0; i < text_.size(); ++i) {
@@ -63,12 +65,22 @@ SourceLocation Source::where(size_t offset) const {
         }
     }
     const auto line = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset) - 1;
-    return {
-        name_, static_cast<uint32_t>(line - line_starts_.begin() + 1), static_cast<uint32_t>(offset - *line + 1), {}};
+    return {name_,
+            static_cast<uint32_t>(line - line_starts_.begin() + 1),
+            static_cast<uint32_t>(offset - *line + 1),
+            {},
+            pointer};
 }
 
-void Source::fail(size_t offset, std::string message, std::string hint) const {
-    throw ReadFailure{error_at(text_, name_, offset, std::move(message), std::move(hint))};
+Error Source::error(size_t offset, std::string message, std::string hint, ErrorCode code) const {
+    if (begin_) return {code, std::move(message), where(offset), {}, std::move(hint)};
+    Error out = error_at(text_, name_, offset, std::move(message), std::move(hint), code);
+    if (pointers_) out.where.pointer = pointers_->pointer(offset);
+    return out;
+}
+
+void Source::fail(size_t offset, std::string message, std::string hint, ErrorCode code) const {
+    throw ReadFailure{error(offset, std::move(message), std::move(hint), code)};
 }
 
 void Source::fail(Error error, size_t offset) const {
@@ -80,7 +92,7 @@ void Source::fail(Error error, size_t offset) const {
     }
     std::string message =
         error.where.file.empty() ? error.message : escape_for_display(error.where.file, 200) + ": " + error.message;
-    throw ReadFailure{error_at(text_, name_, offset, std::move(message), std::move(error.hint), error.code)};
+    throw ReadFailure{this->error(offset, std::move(message), std::move(error.hint), error.code)};
 }
 
 double read_double(const Source& source, Value value, std::string_view what, Range range) {

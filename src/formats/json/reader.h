@@ -22,11 +22,15 @@ struct ReadFailure {
 class Source {
 public:
     Source(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}
+    /// With JSON pointers in all messages. `begin`: where in the file the text lies, if that is a binary one.
+    Source(const Document& document, std::string name, std::optional<uint64_t> begin)
+        : text_(document.text()), name_(std::move(name)), pointers_(&document), begin_(begin) {}
 
     const std::string& name() const noexcept { return name_; }
     /// Fast enough to be asked for every element of a large file.
     SourceLocation where(size_t offset) const;
-    [[noreturn]] void fail(size_t offset, std::string message, std::string hint = {}) const;
+    [[noreturn]] void fail(size_t offset, std::string message, std::string hint = {},
+                           ErrorCode code = ErrorCode::bad_input) const;
     /// Passes the value on; an error about a file as a whole ("no such file") is moved to the place that named the
     /// file, one from inside a file keeps its place and gets a hint that says who named it.
     template <class T>
@@ -37,9 +41,12 @@ public:
 
 private:
     [[noreturn]] void fail(Error error, size_t offset) const;
+    Error error(size_t offset, std::string message, std::string hint, ErrorCode code) const;
 
     std::string_view text_;
     std::string name_;
+    const Document* pointers_ = nullptr;
+    std::optional<uint64_t> begin_;
     mutable std::vector<size_t> line_starts_;  ///< filled on first use
 };
 

@@ -228,7 +228,7 @@ void LibraryReader::read_map(std::string_view keyword, Words& words) {
         notes.add(Remark::no_file_name, keyword, offset_of(keyword.data()));
         return;
     }
-    if (!options_.allow_outside_paths && leaves_folder(file))
+    if (!options_.allow_outside_paths.value_or(true) && leaves_folder(file))
         throw ParseFailure{offset_of(file.data()), "the texture lies outside of the model's folder",
                            "move it there, or allow outside paths"};
     current_.diffuse_map = resolve_asset(file, folder_);

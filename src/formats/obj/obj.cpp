@@ -71,7 +71,7 @@ public:
         for (const obj::Library& library : libraries) {
             // A name with blanks is often written as it is; so the whole rest of the line is tried first.
             const std::vector<std::string> names = split_names(library.names);
-            if (names.size() > 1 && (options_.allow_outside_paths || !leaves_folder(library.names))) {
+            if (names.size() > 1 && (options_.allow_outside_paths.value_or(true) || !leaves_folder(library.names))) {
                 const std::string path = resolve_asset(library.names, folder_);
                 if (auto whole = read_file(path, options_.max_file_bytes)) {
                     if (const Status done = load_file(std::string(library.names), library.offset, &*whole); !done)
@@ -118,7 +118,7 @@ private:
 
     Status load_file(const std::string& file, size_t offset, const std::string* content) {
         const std::string path = resolve_asset(file, folder_);
-        if (!options_.allow_outside_paths && leaves_folder(file))
+        if (!options_.allow_outside_paths.value_or(true) && leaves_folder(file))
             return text_error(text_, name_,
                               {offset, "the material library lies outside of the model's folder",
                                "move it there, or allow outside paths"});

@@ -93,6 +93,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     out.fuzz_weight = number(m.fuzz_weight);
     out.fuzz_color = color(m.fuzz_color);
     out.opacity = number(m.geometry_opacity);
+    if (m.geometry_opacity_cutoff > 0) out.opacity = out.opacity >= m.geometry_opacity_cutoff ? 1.0f : 0.0f;
     return out;
 }
 

@@ -6,12 +6,12 @@ namespace steradian {
 
 inline uint32_t samples_wanted(const SpotLight&) { return 1; }
 
-/// Smoothstep from 0 at the outer cone to 1 at the inner one, in the cosine of the angle; a step where both are one.
-inline double spot_falloff(double cosine, double cos_inner, double cos_outer) {
+/// From 0 at the outer cone to 1 at the inner one, in the cosine of the angle; a step where both are one.
+inline double spot_falloff(SpotFalloff kind, double cosine, double cos_inner, double cos_outer) {
     if (cosine >= cos_inner) return 1;
     if (cosine <= cos_outer) return 0;
     const double x = (cosine - cos_outer) / (cos_inner - cos_outer);
-    return x * x * (3 - 2 * x);
+    return kind == SpotFalloff::squared ? x * x : x * x * (3 - 2 * x);
 }
 
 inline std::optional<LightSample> sample_kind(const SpotLight& light, const LightContext& context,
@@ -20,7 +20,7 @@ inline std::optional<LightSample> sample_kind(const SpotLight& light, const Ligh
     if (!towards) return std::nullopt;
     const ShadingScene::LightData& data = context.data();
     const Vec3d away = normalize(Vec3d(from.p) - Vec3d(light.position));
-    const double falloff = spot_falloff(dot(away, data.direction), data.cos_inner, data.cos_outer);
+    const double falloff = spot_falloff(light.falloff, dot(away, data.direction), data.cos_inner, data.cos_outer);
     return delta_sample(from, light.position, light.intensity * static_cast<float>(falloff), *towards);
 }
 

@@ -1,0 +1,59 @@
+// Accessors: typed arrays in buffer views.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/gltf/buffers.h"
+
+namespace steradian::gltf {
+
+enum class ComponentType : uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+size_t size_of(ComponentType type) noexcept;
+std::string_view name_of(ComponentType type) noexcept;
+
+/// Where the elements are, everything checked: whatever is read by its numbers lies in a buffer. Nothing is believed
+/// of "min" and "max".
+struct Accessor {
+    size_t offset = 0;  ///< in the JSON, for messages
+    ComponentType component = ComponentType::f32;
+    bool normalized = false;  ///< integers stand for [0, 1] or [-1, 1]
+    uint32_t components = 1;  ///< of one element
+    uint64_t count = 0;
+    const std::byte* data = nullptr;  ///< null: all elements are zero
+    uint64_t stride = 0;
+    struct Sparse {  ///< elements that differ
+        uint64_t count = 0;
+        ComponentType index_type = ComponentType::u32;
+        const std::byte* indices = nullptr;
+        const std::byte* values = nullptr;
+    } sparse = {};
+
+    /// Component c of element i as a float; `sparse` is not looked at.
+    float number(uint64_t i, uint32_t c) const noexcept;
+};
+
+class Accessors {
+public:
+    Accessors(Context& context, Buffers& buffers) : context_(context), buffers_(buffers) {}
+
+    Accessor open(uint32_t number);
+
+    // Elements as they are meant, after normalisation and with sparse ones in place. The number of components must be
+    // that of the result; memory is taken from the budget.
+    std::vector<Vec2> read_vec2(const Accessor& accessor);
+    std::vector<Vec3> read_vec3(const Accessor& accessor);
+    /// Whole numbers that are not negative; fails for other types.
+    std::vector<uint32_t> read_indices(const Accessor& accessor);
+
+private:
+    Accessor::Sparse open_sparse(const Object& sparse, const Accessor& accessor);
+    const std::byte* open_array(const Object& object, uint64_t count, uint64_t element_size);
+    template <class T, class Set>
+    std::vector<T> read(const Accessor& accessor, Set set);
+
+    Context& context_;
+    Buffers& buffers_;
+};
+
+}  // namespace steradian::gltf

@@ -1,0 +1,76 @@
+#include "formats/gltf/buffers.h"
+
+#include "base/file.h"
+#include "base/text.h"
+#include "formats/gltf/uri.h"
+
+namespace steradian::gltf {
+namespace {
+
+constexpr uint64_t kMaxBytes = uint64_t(1) << 53;  ///< whole numbers of JSON are exact up to here
+
+}  // namespace
+
+std::string Buffers::read_data(std::string_view uri, size_t offset) const {
+    const DataUri data = *parse_data_uri(uri);
+    if (!data.base64)
+        context_.source.fail(offset, "this data URI is not encoded in base64, expected 'data:<type>;base64,<data>'");
+    auto bytes = decode_base64(data.payload);
+    if (!bytes) context_.source.fail(offset, "the data of this URI is not base64");
+    return std::move(*bytes);
+}
+
+std::string Buffers::read_uri(std::string_view uri, size_t offset) {
+    if (parse_data_uri(uri)) return read_data(uri, offset);
+    const auto name = percent_decoded(uri);
+    if (!name)
+        context_.source.fail(offset, "this URI has a '%' that is not followed by two hexadecimal digits",
+                             "a '%' in a file's name is written as %25");
+    const std::string path = context_.source.take(context_.assets.resolve(*name), offset);
+    std::string bytes = context_.source.take(read_file(path, context_.options.max_file_bytes), offset);
+    context_.loaded.files.push_back(path);
+    context_.grant(bytes.size());
+    return bytes;
+}
+
+Buffers::Bytes Buffers::buffer(uint32_t number) {
+    if (const auto known = open_.find(number); known != open_.end()) return known->second;
+    const Object buffer(context_.source, context_.tables.buffers.elements[number], "a buffer");
+    const uint64_t length =
+        json::read_integer(context_.source, buffer.require("byteLength"), "'byteLength'", 1, kMaxBytes);
+    std::string_view bytes;
+    if (const auto uri = buffer.find("uri")) {
+        const std::string_view text = json::read_string(context_.source, *uri, "'uri'");
+        bytes = owned_.emplace(number, read_uri(text, uri->offset())).first->second;
+    } else if (number == 0 && binary_chunk_) {
+        bytes = *binary_chunk_;
+    } else {
+        // Extensions may say where its data are; nothing else does.
+        context_.warn("a buffer has no data: zeros are used", buffer.offset());
+        context_.geometry.take(length, context_.source, buffer.offset());
+        bytes = owned_.emplace(number, std::string(length, '\0')).first->second;
+    }
+    if (bytes.size() < length)
+        context_.source.fail(
+            buffer.offset_of("byteLength"),
+            "the buffer claims " + std::to_string(length) + " bytes, but there are " + std::to_string(bytes.size()));
+    const Bytes out = std::as_bytes(std::span(bytes.data(), length));
+    open_.emplace(number, out);
+    return out;
+}
+
+Buffers::View Buffers::view(uint32_t number) {
+    const Object view(context_.source, context_.tables.buffer_views.elements[number], "a buffer view");
+    const uint32_t of = view.require_reference("buffer", context_.tables.buffers);
+    const uint64_t begin = view.integer_or("byteOffset", 0, 0, kMaxBytes);
+    const uint64_t length =
+        json::read_integer(context_.source, view.require("byteLength"), "'byteLength'", 1, kMaxBytes);
+    const Bytes bytes = buffer(of);
+    if (begin > bytes.size() || length > bytes.size() - begin)
+        context_.source.fail(view.offset(), "the buffer view needs bytes " + std::to_string(begin) + " to " +
+                                                std::to_string(begin + length) + " of a buffer with " +
+                                                std::to_string(bytes.size()));
+    return {bytes.subspan(begin, length), view.integer_or("byteStride", 0, 4, 252)};
+}
+
+}  // namespace steradian::gltf

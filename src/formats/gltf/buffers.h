@@ -1,0 +1,41 @@
+// Buffers and the views into them. A buffer is read when it is first used and stays until the file is loaded.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+
+#include "formats/gltf/context.h"
+
+namespace steradian::gltf {
+
+class Buffers {
+public:
+    using Bytes = std::span<const std::byte>;
+
+    Buffers(Context& context, std::optional<std::string_view> binary_chunk)
+        : context_(context), binary_chunk_(binary_chunk) {}
+
+    struct View {
+        Bytes bytes;
+        uint64_t stride = 0;  ///< between elements; 0: as large as they are
+    };
+    /// Fails where the view leaves its buffer, or the buffer its file.
+    View view(uint32_t number);
+
+    /// What a URI refers to: data in itself, or a file inside the scene's folder. Nothing is fetched from the network.
+    /// `offset` is that of the URI, for messages.
+    std::string read_uri(std::string_view uri, size_t offset);
+
+private:
+    Bytes buffer(uint32_t number);
+    std::string read_data(std::string_view uri, size_t offset) const;
+
+    Context& context_;
+    std::optional<std::string_view> binary_chunk_;
+    std::map<uint32_t, std::string> owned_;  ///< those that have a URI
+    std::map<uint32_t, Bytes> open_;
+};
+
+}  // namespace steradian::gltf

@@ -1,0 +1,128 @@
+#include "formats/gltf/context.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/text.h"
+#include "math/vector.h"
+
+namespace steradian::gltf {
+namespace {
+
+/// What can be required of us: all of it is honoured, or reported where it is not.
+constexpr std::array<std::string_view, 15> kExtensions{"KHR_lights_punctual",
+                                                       "KHR_materials_anisotropy",
+                                                       "KHR_materials_clearcoat",
+                                                       "KHR_materials_diffuse_transmission",
+                                                       "KHR_materials_emissive_strength",
+                                                       "KHR_materials_ior",
+                                                       "KHR_materials_sheen",
+                                                       "KHR_materials_specular",
+                                                       "KHR_materials_transmission",
+                                                       "KHR_materials_unlit",
+                                                       "KHR_materials_variants",
+                                                       "KHR_materials_volume",
+                                                       "KHR_mesh_quantization",
+                                                       "KHR_texture_transform",
+                                                       "EXT_mesh_gpu_instancing"};
+
+/// What to do about well-known ones that we do not have.
+std::string remedy(std::string_view name) {
+    if (name == "KHR_texture_basisu")
+        return "its textures are KTX2 files: export them as PNG or JPEG, or convert the file with 'gltf-transform'";
+    if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression")
+        return "its meshes are compressed: export without compression, or run 'gltf-transform copy' over the file";
+    if (name == "EXT_texture_webp") return "its textures are WebP files: export them as PNG or JPEG";
+    return {};
+}
+
+bool is_known(std::string_view name) {
+    return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
+}
+
+/// Calls `visit` for every member of an "extensions" object, in the order of the text. "extras" are the author's own.
+template <class Visit>
+void each_extension(Value root, Visit visit) {
+    std::vector<Value> open{root};
+    while (!open.empty()) {
+        const Value value = open.back();
+        open.pop_back();
+        const auto first = static_cast<std::ptrdiff_t>(open.size());
+        if (value.is(Kind::array))
+            for (const Value element : value.elements()) open.push_back(element);
+        if (value.is(Kind::object))
+            for (const json::Member member : value.members()) {
+                if (member.key == "extensions" && member.value.is(Kind::object))
+                    for (const json::Member extension : member.value.members()) visit(extension);
+                if (member.key != "extras") open.push_back(member.value);
+            }
+        std::reverse(open.begin() + first, open.end());
+    }
+}
+
+}  // namespace
+
+Tables::Tables(const Object& root) {
+    for (Table* table : {&accessors, &buffer_views, &buffers, &cameras, &images, &materials, &meshes, &nodes, &samplers,
+                         &scenes, &textures})
+        table->elements = root.array(table->key);
+    if (const auto punctual = root.extension("KHR_lights_punctual")) lights.elements = punctual->array(lights.key);
+    if (const auto all = root.extension("KHR_materials_variants")) variants.elements = all->array(variants.key);
+}
+
+void Budget::take(uint64_t bytes, const Source& source, size_t offset) {
+    const uint64_t limit = max_of(free_, kMaxExpansion * read_);
+    if (bytes <= limit - taken_) {
+        taken_ += bytes;
+        return;
+    }
+    source.fail(offset,
+                "this makes more than " + std::to_string(limit >> 20) + " MiB of " + std::to_string(read_) +
+                    " bytes, expected at most " + std::to_string(kMaxExpansion) + " times as much",
+                {}, ErrorCode::resources);
+}
+
+void Context::say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset) {
+    const bool known = said.contains(message);
+    if (!known && said.size() >= kMaxDifferent) message = "and others of which there are too many to list";
+    // The place is that of the first one; to find the pointer of each would take long in a large file.
+    const bool first = said.insert(message).second;
+    list.warn(std::move(message), first ? source.where(offset) : SourceLocation{});
+}
+
+void check_extensions(Context& context, const Object& root) {
+    for (const Value value : root.array("extensionsRequired")) {
+        const std::string_view name = json::read_string(context.source, value, "an element of 'extensionsRequired'");
+        if (!is_known(name))
+            context.source.fail(value.offset(),
+                                "the file requires the extension " + quoted(name) + ", which is not supported",
+                                remedy(name));
+    }
+    for (const Value value : root.array("extensionsUsed"))
+        json::read_string(context.source, value, "an element of 'extensionsUsed'");
+    each_extension(root.value(), [&](const json::Member& member) {
+        if (!is_known(member.key))
+            context.not_honoured("the extension " + quoted(member.key) + " is not supported and has no effect",
+                                 member.key_offset);
+    });
+}
+
+uint32_t find_variant(const Context& context, std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const Value value : context.tables.variants.elements)
+        names.push_back(Object(context.source, value, "a variant").string_or("name", ""));
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
+    throw json::ReadFailure{Error{ErrorCode::usage,
+                                  "there is no variant called " + quoted(name),
+                                  {context.source.name(), 0, 0},
+                                  {},
+                                  names.empty() ? "the file has no variants" : suggestion(name, names)}};
+}
+
+std::string name_of(const Object& element, std::string_view what, uint32_t number) {
+    const std::string_view name = element.string_or("name", "");
+    return name.empty() ? std::string(what) + " " + std::to_string(number) : std::string(name);
+}
+
+}  // namespace steradian::gltf

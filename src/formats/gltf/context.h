@@ -1,0 +1,80 @@
+// What all parts of the glTF reader share.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "formats/assets.h"
+#include "formats/gltf/object.h"
+
+namespace steradian::gltf {
+
+/// The arrays that elements are referred to in.
+struct Tables {
+    Table accessors{"accessors", "accessor"}, buffer_views{"bufferViews", "buffer view"}, buffers{"buffers", "buffer"};
+    Table cameras{"cameras", "camera"}, images{"images", "image"}, lights{"lights", "light"};
+    Table materials{"materials", "material"}, meshes{"meshes", "mesh"}, nodes{"nodes", "node"};
+    Table samplers{"samplers", "sampler"}, scenes{"scenes", "scene"}, textures{"textures", "texture"};
+    Table variants{"variants", "variant"};
+
+    explicit Tables(const Object& root);
+};
+
+/// What a file may make of itself: kMaxExpansion times the bytes that were read, or a fixed amount if that is more. So
+/// that a small file cannot ask for any amount of memory by naming the same data over and over.
+class Budget {
+public:
+    static constexpr uint64_t kMaxExpansion = 256;
+    explicit Budget(uint64_t free_bytes) : free_(free_bytes) {}
+
+    void grant(uint64_t file_bytes) noexcept { read_ += file_bytes; }
+    /// Fails at `offset` when there is no more. Call it before the memory is taken.
+    void take(uint64_t bytes, const Source& source, size_t offset);
+
+private:
+    uint64_t free_, read_ = 0, taken_ = 0;
+};
+
+class Context {
+public:
+    Context(const Source& source_, const Tables& tables_, const LoadOptions& options_, LoadedScene& loaded_,
+            Assets& assets_)
+        : source(source_), tables(tables_), options(options_), loaded(loaded_), assets(assets_) {}
+
+    const Source& source;
+    const Tables& tables;
+    const LoadOptions& options;
+    LoadedScene& loaded;
+    Assets& assets;
+    std::optional<uint32_t> variant;       ///< the chosen one
+    Budget geometry{uint64_t(256) << 20};  ///< vertices, indices, instances
+    Budget texels{uint64_t(1) << 30};      ///< pictures of one colour are large, and their files tiny
+
+    void grant(uint64_t file_bytes) noexcept { geometry.grant(file_bytes), texels.grant(file_bytes); }
+
+    /// Something in the file is not as it should be, and the picture can be made nevertheless.
+    void warn(std::string message, size_t offset) { say(loaded.diagnostics, warned_, std::move(message), offset); }
+    /// Something that the file says is left out or only come near to.
+    void not_honoured(std::string message, size_t offset) {
+        say(loaded.fidelity, reported_, std::move(message), offset);
+    }
+
+private:
+    /// A hostile file can make any number of different messages: so many are kept.
+    static constexpr size_t kMaxDifferent = 100;
+    void say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset);
+
+    std::set<std::string> warned_, reported_;
+};
+
+/// Fails when the file requires an extension that is not there; reports those that it uses only.
+void check_extensions(Context& context, const Object& root);
+
+/// The variant of that name among those of the file; fails where there is none.
+uint32_t find_variant(const Context& context, std::string_view name);
+
+/// The element's name, or "mesh 3".
+std::string name_of(const Object& element, std::string_view what, uint32_t number);
+
+}  // namespace steradian::gltf

@@ -1,0 +1,47 @@
+#include "formats/gltf/gltf.h"
+
+#include "formats/gltf/container.h"
+#include "formats/gltf/nodes.h"
+#include "formats/studio.h"
+
+namespace steradian::gltf {
+namespace {
+
+template <class T>
+T value_or_throw(Result<T> result) {
+    if (!result) throw json::ReadFailure{std::move(result).error()};
+    return std::move(result).value();
+}
+
+}  // namespace
+
+LoadedScene load(std::string_view bytes, const std::string& name, const std::string& folder, const LoadOptions& given) {
+    LoadedScene loaded;
+    LoadOptions options = given;
+    if (!options.allow_outside_paths) options.allow_outside_paths = false;
+    const Container container = value_or_throw(open_container(bytes, name, loaded.diagnostics));
+    const auto document = value_or_throw(json::Document::parse(container.json, name, options.max_depth));
+    const Source source(document, name, container.json_begin);
+    if (const auto duplicate = document.duplicate_key())
+        source.fail(duplicate->second_offset, "the key " + quoted(duplicate->key) + " stands here for the second time",
+                    "the first one is at " + source.where(duplicate->first_offset).str());
+    const Object root(source, document.root(), "a glTF file");
+    check_asset(root);
+    const Tables tables(root);
+    Assets assets(loaded, folder, options);
+    Context context(source, tables, options, loaded, assets);
+    context.grant(bytes.size());
+    check_extensions(context, root);
+    if (!options.gltf_variant.empty()) context.variant = find_variant(context, options.gltf_variant);
+    Buffers buffers(context, container.binary);
+    Accessors accessors(context, buffers);
+    Images images(context, buffers);
+    Materials materials(context, images);
+    Meshes meshes(context, accessors, materials);
+    place_nodes(context, accessors, meshes, root);
+    images.decode();
+    if (loaded.scene.instances.empty()) context.warn("the scene has nothing to render", root.offset());
+    return loaded;
+}
+
+}  // namespace steradian::gltf

@@ -1,0 +1,16 @@
+// glTF 2.0, as text (.gltf) and as a binary file (.glb).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "steradian/load.h"
+
+namespace steradian::gltf {
+
+/// Paths in it are relative to `folder`, and stay inside of it unless the options say otherwise. What is there is
+/// read leniently: what can be rendered is, with warnings. Throws json::ReadFailure.
+LoadedScene load(std::string_view bytes, const std::string& name, const std::string& folder,
+                 const LoadOptions& options);
+
+}  // namespace steradian::gltf

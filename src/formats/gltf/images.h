@@ -1,0 +1,56 @@
+// Images and the textures that read them.
+#pragma once
+
+#include <array>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "formats/gltf/buffers.h"
+
+namespace steradian::gltf {
+
+/// Which of an image's channels a material reads. glTF packs numbers into the channels of one image; the scene keeps
+/// each as an image of its own, so that nothing is stored that nobody reads.
+enum class Plane : uint8_t { color, red, green, blue, alpha };
+
+/// What an object of the file says about a texture ("baseColorTexture").
+struct TextureUse {
+    uint32_t texture = 0;
+    uint32_t uv_set = 0;
+    size_t offset = 0;                     ///< for messages
+    Vec2 uv_scale{1, 1}, uv_offset{0, 0};  ///< KHR_texture_transform
+};
+
+class Images {
+public:
+    Images(Context& context, Buffers& buffers) : context_(context), buffers_(buffers) {}
+
+    std::optional<TextureUse> use(const Object& object, std::string_view key);
+    TextureId texture(const TextureUse& use, Plane plane, ColorSpace space);
+
+    /// Decodes what textures have been made of, on all cores. Until then the scene's images are empty.
+    void decode();
+
+private:
+    struct Image {
+        std::string bytes;         ///< of a file or a URI
+        std::string_view encoded;  ///< the same, or in a buffer
+        std::string name;          ///< for messages
+        size_t offset = 0;
+        std::array<std::optional<ImageId>, 5> planes{};
+    };
+    ImageId plane_of(uint32_t image, Plane plane);
+    Image open(uint32_t number);
+    uint32_t image_of(const Object& texture, size_t offset);
+    static Error cannot_decode(const Image& image, const Error& error);
+    void keep(const Image& image, RawImage whole);
+
+    Context& context_;
+    Buffers& buffers_;
+    std::map<uint32_t, Image> images_;
+    using TextureKey = std::tuple<uint32_t, Plane, ColorSpace, std::array<float, 4>>;
+    std::map<TextureKey, TextureId> textures_;
+};
+
+}  // namespace steradian::gltf

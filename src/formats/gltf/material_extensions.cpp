@@ -1,0 +1,159 @@
+// The extensions of materials, as far as OpenPBR says the same or comes near.
+#include <cmath>
+
+#include "formats/gltf/materials.h"
+#include "math/elementary.h"
+#include "math/vector.h"
+
+namespace steradian::gltf {
+namespace {
+
+constexpr Range kNotNegative{0, 1e30};
+
+/// The reflectance at normal incidence of a boundary with this index, and the other way round.
+double reflectance_of(double ior) {
+    const double f = (ior - 1) / (ior + 1);
+    return f * f;
+}
+double ior_of(double reflectance) {
+    const double f = std::sqrt(min_of(reflectance, 0.66));  // of an index of 9.7
+    return (1 + f) / (1 - f);
+}
+
+}  // namespace
+
+/// What passes is tinted by the base colour where it enters and where it leaves. Absorption on the way is put into the
+/// two surfaces, for a body as thick as the file says.
+void Materials::read_transmission(const Object& material, Reading& r) {
+    const auto transmission = material.extension("KHR_materials_transmission");
+    if (!transmission) return;
+    OpenPbrMaterial& s = r.surface;
+    s.transmission_weight.value = unit(*transmission, "transmissionFactor", 0);
+    s.transmission_weight.texture = texture(*transmission, "transmissionTexture", Plane::red, r);
+    s.transmission_color = s.base_color;
+    const auto volume = material.extension("KHR_materials_volume");
+    const double thickness = volume ? volume->number_or("thicknessFactor", 0, kNotNegative) : 0;
+    r.solid = thickness > 0;
+    if (!r.solid || s.transmission_weight.value == 0) return;
+    no_texture(*volume, "thicknessTexture");
+    if (!volume->has("attenuationDistance")) return;
+    const double distance = volume->number_or("attenuationDistance", 1, {0, 1e30, true});
+    const Rgb color = volume->color_or("attenuationColor", {1, 1, 1}, {0, 1});
+    if (color == Rgb{1, 1, 1}) return;
+    context_.not_honoured("the absorption of volumes is put into their surfaces: thin and thick parts look alike",
+                          volume->offset());
+    for (int c = 0; c < 3; ++c)
+        s.transmission_color.value[c] *=
+            static_cast<float>(math::pow(static_cast<double>(color[c]), thickness / (2 * distance)));
+}
+
+/// The reflectance at normal incidence is that of the index times factor and colour. Where there is metal, of which the
+/// extension does not speak, the index says it all.
+void Materials::read_specular(const Object& material, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    double ior = 1.5;
+    if (const auto extension = material.extension("KHR_materials_ior")) {
+        constexpr double kLargest = 9.7;
+        ior = extension->number_or("ior", 1.5, kNotNegative);
+        if (ior > kLargest || ior < 1)
+            context_.not_honoured("an index of refraction beyond 1 to 9.7 is taken as the nearer one",
+                                  extension->offset_of("ior"));
+        ior = ior == 0 ? kLargest : clamp_to(ior, 1.0, kLargest);
+    }
+    s.specular_ior = static_cast<float>(ior);
+    const auto specular = material.extension("KHR_materials_specular");
+    if (!specular) return;
+    no_texture(*specular, "specularTexture");
+    no_texture(*specular, "specularColorTexture");
+    Rgb color = specular->color_or("specularColorFactor", {1, 1, 1}, kNotNegative);
+    const double most = max_component(color);
+    const double weight = static_cast<double>(unit(*specular, "specularFactor", 1)) * most;
+    if (most > 0 && s.base_metalness.value < 1) s.specular_color = color * static_cast<float>(1 / most);
+    for (int c = 0; c < 3; ++c) s.specular_color[c] = min_of(s.specular_color[c], 1.0f);
+    if (s.base_metalness.value == 0)
+        s.specular_weight = static_cast<float>(min_of(weight, 10.0));
+    else
+        s.specular_ior = static_cast<float>(ior_of(weight * reflectance_of(ior)));
+}
+
+void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    s.coat_weight = unit(clearcoat, "clearcoatFactor", 0);
+    if (s.coat_weight == 0) return;
+    s.coat_roughness = unit(clearcoat, "clearcoatRoughnessFactor", 0);
+    s.coat_ior = 1.5f;
+    s.coat_darkening = 0;
+    for (const std::string_view key : {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"})
+        no_texture(clearcoat, key);
+}
+
+/// As fuzz, whose model is another one: near, not the same.
+void Materials::read_sheen(const Object& sheen, Reading& r) {
+    const Rgb color = sheen.color_or("sheenColorFactor", {0, 0, 0}, {0, 1});
+    const float most = max_component(color);
+    if (most == 0) return;
+    OpenPbrMaterial& s = r.surface;
+    s.fuzz_weight.value = most;
+    s.fuzz_color = {color * (1 / most), texture(sheen, "sheenColorTexture", Plane::color, r)};
+    s.fuzz_roughness = unit(sheen, "sheenRoughnessFactor", 0);
+    for (int c = 0; c < 3; ++c) s.fuzz_color.value[c] = min_of(s.fuzz_color.value[c], 1.0f);
+    no_texture(sheen, "sheenRoughnessTexture");
+}
+
+/// α along the grain is mix(α, 1, strength²), across it α: the roughness and anisotropy of OpenPBR that give the two.
+void Materials::read_anisotropy(const Object& anisotropy, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    const double strength = unit(anisotropy, "anisotropyStrength", 0);
+    if (strength == 0) return;
+    const double rough = s.specular_roughness.value, across = max_of(rough * rough, 1e-4);
+    const double along = across + (1 - across) * strength * strength;
+    const double ratio = across / along, squared = along / std::sqrt(2 / (1 + ratio * ratio));
+    s.specular_roughness.value = static_cast<float>(min_of(std::sqrt(squared), 1.0));
+    s.specular_roughness_anisotropy = static_cast<float>(1 - ratio);
+    if (anisotropy.number_or("anisotropyRotation", 0, {-1e6, 1e6}) != 0)
+        context_.not_honoured("the grain of a material is not turned by 'anisotropyRotation'",
+                              anisotropy.offset_of("anisotropyRotation"));
+    no_texture(anisotropy, "anisotropyTexture");
+}
+
+void Materials::read_diffuse_transmission(const Object& extension, Reading& r) {
+    const float factor = unit(extension, "diffuseTransmissionFactor", 0);
+    if (factor == 0) return;
+    const OpenPbrMaterial& s = r.surface;
+    const bool textured = s.base_color.texture || extension.has("diffuseTransmissionTexture") ||
+                          extension.has("diffuseTransmissionColorTexture");
+    if (textured || s.base_metalness.value > 0 || s.geometry_opacity.value < 1 || s.geometry_opacity.texture) {
+        context_.not_honoured("diffuse transmission has no effect beside textures, metal or opacity",
+                              extension.offset());
+        return;
+    }
+    r.diffuse_transmission = factor;
+    r.diffuse_transmission_color = extension.color_or("diffuseTransmissionColorFactor", {1, 1, 1}, {0, 1});
+    context_.not_honoured("materials with diffuse transmission have no gloss", extension.offset());
+}
+
+void Materials::read_extensions(const Object& material, Reading& r) {
+    if (material.extension("KHR_materials_unlit")) {
+        r.unlit = true;
+        r.emission = r.surface.base_color.value;
+        if (r.base_color) context_.not_honoured("the texture of an unlit material has no effect", r.base_color->offset);
+        return;
+    }
+    read_specular(material, r);
+    read_transmission(material, r);
+    if (const auto coat = material.extension("KHR_materials_clearcoat")) read_clearcoat(*coat, r);
+    if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
+    if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);
+    if (const auto diffuse = material.extension("KHR_materials_diffuse_transmission"))
+        read_diffuse_transmission(*diffuse, r);
+    if (!r.solid && r.surface.transmission_weight.value > 0) {
+        const OpenPbrMaterial& s = r.surface;
+        const bool plain = s.transmission_weight.value == 1 && !s.transmission_weight.texture &&
+                           s.specular_roughness.value == 0 && !s.base_color.texture && s.base_metalness.value == 0;
+        if (!plain)
+            context_.not_honoured("a thin sheet that is rough, textured or transmits partly refracts like a solid body",
+                                  material.offset());
+    }
+}
+
+}  // namespace steradian::gltf

@@ -1,0 +1,166 @@
+#include "formats/gltf/materials.h"
+
+#include "math/vector.h"
+
+namespace steradian::gltf {
+
+namespace {
+
+constexpr Range kNotNegative{0, 1e30};
+
+bool is_white(Rgb c) { return c.r == 1 && c.g == 1 && c.b == 1; }
+
+}  // namespace
+
+/// A number in [0, 1]; what lies outside is clamped, with a warning.
+float Materials::unit(const Object& object, std::string_view key, float fallback) {
+    const double x = object.number_or(key, static_cast<double>(fallback), {-1e30, 1e30});
+    if (!(x >= 0 && x <= 1))
+        context_.warn(quoted(key) + " of a material must be between 0 and 1 and was clamped", object.offset_of(key));
+    return static_cast<float>(clamp_to(x, 0.0, 1.0));
+}
+
+void Materials::no_texture(const Object& object, std::string_view key) {
+    if (const auto value = object.find(key))
+        context_.not_honoured("the texture " + quoted(key) + " has no effect", value->offset());
+}
+
+std::optional<TextureId> Materials::texture(const Object& object, std::string_view key, Plane plane, Reading& r) {
+    const auto use = images_.use(object, key);
+    if (!use) return std::nullopt;
+    if (!r.uv_set) r.uv_set = use->uv_set;
+    if (*r.uv_set != use->uv_set)
+        context_.not_honoured(
+            "a material reads more than one set of texture coordinates: all its textures use the "
+            "one that is read first",
+            use->offset);
+    return images_.texture(*use, plane, plane == Plane::color ? ColorSpace::srgb : ColorSpace::linear);
+}
+
+/// Section 3.9.2 of the specification.
+void Materials::read_metallic_roughness(const Object& material, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    s.base_color = {{1, 1, 1}};
+    s.base_metalness = {1};
+    s.specular_roughness = {1};
+    const auto pbr = material.object("pbrMetallicRoughness");
+    if (!pbr) return;
+    if (const auto factor = pbr->numbers("baseColorFactor", 4, kNotNegative)) {
+        for (int c = 0; c < 3; ++c) {
+            const double x = (*factor)[static_cast<size_t>(c)];
+            if (x > 1)
+                context_.warn("'baseColorFactor' must be between 0 and 1 and was clamped",
+                              pbr->offset_of("baseColorFactor"));
+            s.base_color.value[c] = static_cast<float>(min_of(x, 1.0));
+        }
+        s.geometry_opacity.value = static_cast<float>(min_of((*factor)[3], 1.0));
+    }
+    r.base_color = images_.use(*pbr, "baseColorTexture");
+    s.base_color.texture = texture(*pbr, "baseColorTexture", Plane::color, r);
+    s.base_metalness.value = unit(*pbr, "metallicFactor", 1);
+    s.specular_roughness.value = unit(*pbr, "roughnessFactor", 1);
+    s.base_metalness.texture = texture(*pbr, "metallicRoughnessTexture", Plane::blue, r);
+    s.specular_roughness.texture = texture(*pbr, "metallicRoughnessTexture", Plane::green, r);
+}
+
+/// Section 3.9.4. What is masked is there or not; what is blended is there for a part of the light.
+void Materials::read_alpha(const Object& material, Reading& r) {
+    const std::string_view mode = material.string_or("alphaMode", "OPAQUE");
+    OpenPbrMaterial& s = r.surface;
+    if (mode != "MASK" && mode != "BLEND") {
+        if (mode != "OPAQUE")
+            context_.warn("an 'alphaMode' is none of OPAQUE, MASK and BLEND; OPAQUE is used",
+                          material.offset_of("alphaMode"));
+        s.geometry_opacity = {1};
+        return;
+    }
+    if (r.base_color) s.geometry_opacity.texture = images_.texture(*r.base_color, Plane::alpha, ColorSpace::linear);
+    if (mode == "BLEND") return;
+    const double cutoff = material.number_or("alphaCutoff", 0.5, kNotNegative);
+    if (cutoff > 1) s.geometry_opacity = {0};
+    if (cutoff == 0) s.geometry_opacity = {1};
+    if (cutoff <= 1) s.geometry_opacity_cutoff = static_cast<float>(cutoff);
+}
+
+void Materials::read_emission(const Object& material, Reading& r) {
+    r.emission = material.color_or("emissiveFactor", {0, 0, 0}, kNotNegative);
+    if (const auto strength = material.extension("KHR_materials_emissive_strength"))
+        r.emission = r.emission * static_cast<float>(strength->number_or("emissiveStrength", 1, kNotNegative));
+    if (is_black(r.emission)) return;
+    if (const auto use = images_.use(material, "emissiveTexture")) {
+        context_.not_honoured("an emissive texture has no effect: the surface does not shine", use->offset);
+        r.emission = {0, 0, 0};
+    }
+}
+
+/// Some surfaces have materials of their own, which are exact and take less time.
+std::optional<Material> Materials::make_simple(const Reading& r, const std::string& name) {
+    const OpenPbrMaterial& s = r.surface;
+    const auto color = [&]() -> TextureId {
+        if (s.base_color.texture) return *s.base_color.texture;
+        return context_.assets.add_texture(ConstantTexture{s.base_color.value}, name);
+    };
+    const bool there = s.geometry_opacity.value == 1 && !s.geometry_opacity.texture;
+    const bool layered = s.coat_weight > 0 || s.fuzz_weight.value > 0;
+    if (!there || layered || (s.base_color.texture && !is_white(s.base_color.value))) return std::nullopt;
+    const bool smooth = s.specular_roughness.value == 0;
+    if (s.base_metalness.value == 1 && !s.base_metalness.texture && smooth)
+        return ConductorMaterial{SchlickReflectance{color()}, Roughness{}};
+    if (s.base_metalness.value > 0) return std::nullopt;
+    const bool all_glass = s.transmission_weight.value == 1 && !s.transmission_weight.texture;
+    if (all_glass && smooth && !s.base_color.texture && s.specular_weight == 1) {
+        const Rgb tint = s.transmission_color.value;
+        if (r.solid) return GlassMaterial{s.specular_ior, s.specular_color, tint};
+        if (is_white(s.specular_color)) return ThinGlassMaterial{s.specular_ior, tint};
+    }
+    if (s.specular_weight == 0 && s.transmission_weight.value == 0 && r.diffuse_transmission == 0)
+        return DiffuseMaterial{color(), true};
+    return std::nullopt;
+}
+
+MaterialId Materials::make(const Reading& r, const std::string& name) {
+    if (r.unlit) return context_.assets.add_diffuse({0, 0, 0}, true, name);
+    if (const auto simple = make_simple(r, name)) return context_.assets.add_material(*simple, name);
+    if (r.diffuse_transmission > 0) {
+        const auto constant = [&](Rgb c) { return context_.assets.add_texture(ConstantTexture{c}, name); };
+        const float t = r.diffuse_transmission;
+        return context_.assets.add_material(DiffuseTransmissionMaterial{constant(r.surface.base_color.value * (1 - t)),
+                                                                        constant(r.diffuse_transmission_color * t)},
+                                            name);
+    }
+    return context_.assets.add_material(r.surface, name);
+}
+
+Look Materials::read(const Object& material, const std::string& name) {
+    Reading r;
+    read_metallic_roughness(material, r);
+    read_alpha(material, r);
+    read_emission(material, r);
+    read_extensions(material, r);
+    if (const auto use = images_.use(material, "normalTexture"))
+        context_.not_honoured("a normal texture has no effect", use->offset);
+    Look out;
+    out.material = make(r, name);
+    out.emission = r.emission;
+    out.two_sided = material.boolean_or("doubleSided", false);
+    out.uv_set = r.uv_set.value_or(0);
+    return out;
+}
+
+const Look& Materials::look(std::optional<uint32_t> number) {
+    if (!number) {
+        if (!default_) {
+            Reading r;
+            r.surface.base_color = {{1, 1, 1}};
+            r.surface.base_metalness = {1};
+            r.surface.specular_roughness = {1};
+            default_ = Look{make(r, "default material")};
+        }
+        return *default_;
+    }
+    if (const auto known = looks_.find(*number); known != looks_.end()) return known->second;
+    const Object material(context_.source, context_.tables.materials.elements[*number], "a material");
+    return looks_.emplace(*number, read(material, name_of(material, "material", *number))).first->second;
+}
+
+}  // namespace steradian::gltf

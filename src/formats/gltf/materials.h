@@ -1,0 +1,64 @@
+// Materials: metallic-roughness as OpenPBR, or as the simpler material that says the same where there is one.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "formats/gltf/images.h"
+
+namespace steradian::gltf {
+
+/// A material as primitives use it.
+struct Look {
+    MaterialId material{};
+    Rgb emission{0, 0, 0};
+    bool two_sided = false;  ///< emits on both sides; everything else of it is seen from both sides anyway
+    uint32_t uv_set = 0;     ///< which texture coordinates its textures read
+};
+
+class Materials {
+public:
+    Materials(Context& context, Images& images) : context_(context), images_(images) {}
+
+    /// Of a primitive; nothing: the default material of the specification.
+    const Look& look(std::optional<uint32_t> number);
+
+private:
+    /// One material while it is being read.
+    struct Reading {
+        OpenPbrMaterial surface;
+        Rgb emission{0, 0, 0};
+        std::optional<uint32_t> uv_set;
+        std::optional<TextureUse> base_color;
+        bool unlit = false;
+        bool solid = true;  ///< what transmits encloses a volume; false: it is a thin sheet
+        float diffuse_transmission = 0;
+        Rgb diffuse_transmission_color{1, 1, 1};
+    };
+    Look read(const Object& material, const std::string& name);
+    void read_metallic_roughness(const Object& material, Reading& r);
+    void read_alpha(const Object& material, Reading& r);
+    void read_emission(const Object& material, Reading& r);
+    MaterialId make(const Reading& r, const std::string& name);
+    std::optional<Material> make_simple(const Reading& r, const std::string& name);
+    std::optional<TextureId> texture(const Object& object, std::string_view key, Plane plane, Reading& r);
+    float unit(const Object& object, std::string_view key, float fallback);
+    /// Of an extension's texture that the scene has no place for.
+    void no_texture(const Object& object, std::string_view key);
+
+    // material_extensions.cpp, each by its extension.
+    void read_extensions(const Object& material, Reading& r);
+    void read_transmission(const Object& material, Reading& r);
+    void read_specular(const Object& material, Reading& r);
+    void read_clearcoat(const Object& clearcoat, Reading& r);
+    void read_sheen(const Object& sheen, Reading& r);
+    void read_anisotropy(const Object& anisotropy, Reading& r);
+    void read_diffuse_transmission(const Object& extension, Reading& r);
+
+    Context& context_;
+    Images& images_;
+    std::map<uint32_t, Look> looks_;
+    std::optional<Look> default_;
+};
+
+}  // namespace steradian::gltf

@@ -1,0 +1,47 @@
+// Meshes: primitives of all modes as indexed triangles.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "formats/gltf/accessors.h"
+#include "formats/gltf/materials.h"
+
+namespace steradian::gltf {
+
+class Meshes {
+public:
+    Meshes(Context& context, Accessors& accessors, Materials& materials)
+        : context_(context), accessors_(accessors), materials_(materials) {}
+
+    struct Part {
+        ShapeId shape{};
+        Look look;
+    };
+    /// What a mesh consists of, read when it is first asked for: nodes that share it share its triangles.
+    const std::vector<Part>& parts(uint32_t mesh);
+
+private:
+    static constexpr uint32_t kNone = 0xffffffffu;
+    /// Accessors that make a primitive what it is: positions, normals, texture coordinates, indices; and the mode.
+    using Key = std::array<uint32_t, 5>;
+
+    std::optional<uint32_t> material_of(const Object& primitive);
+    std::optional<ShapeId> shape(const Object& primitive, const Look& look, const std::string& name);
+    std::optional<Mesh> read(const Object& primitive, const Key& key);
+    std::vector<uint32_t> corners(const Object& primitive, const Key& key, uint64_t vertices);
+    Accessor open_attribute(const Object& primitive, std::string_view name, uint32_t accessor, uint32_t components);
+
+    Context& context_;
+    Accessors& accessors_;
+    Materials& materials_;
+    std::map<uint32_t, std::vector<Part>> meshes_;
+    std::map<Key, std::optional<ShapeId>> shapes_;  ///< of primitives that say the same
+};
+
+/// Corners of triangles as corners of a strip (mode 5) or fan (mode 6) say them, in the order of the specification;
+/// of anything else they are what they are. Incomplete triangles are left out.
+std::vector<uint32_t> as_triangles(std::vector<uint32_t> corners, uint32_t mode);
+
+}  // namespace steradian::gltf

@@ -1,0 +1,229 @@
+#include "formats/gltf/nodes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/transform.h"
+
+namespace steradian::gltf {
+namespace {
+
+constexpr Range kNumber{-1e30, 1e30};
+
+Affine from_columns(const std::vector<double>& m) {
+    Affine out;
+    for (size_t row = 0; row < 3; ++row)
+        for (size_t column = 0; column < 4; ++column) out.m[row][column] = m[4 * column + row];
+    return out;
+}
+
+/// Of a quaternion (x, y, z, w) of unit length.
+Affine rotation(double x, double y, double z, double w) {
+    Affine out;
+    out.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0};
+    out.m[1] = {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0};
+    out.m[2] = {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0};
+    return out;
+}
+
+Affine rotation(Context& context, std::array<double, 4> q, size_t offset) {
+    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(std::fabs(length - 1) <= 1e-2)) context.warn("a rotation is not of unit length and was normalised", offset);
+    if (!(length > 0 && length < 1e30)) return {};
+    return rotation(q[0] / length, q[1] / length, q[2] / length, q[3] / length);
+}
+
+Affine read_rotation(Context& context, const Object& node) {
+    const auto q = node.numbers("rotation", 4, kNumber);
+    return q ? rotation(context, {(*q)[0], (*q)[1], (*q)[2], (*q)[3]}, node.offset_of("rotation")) : Affine{};
+}
+
+class Placer {
+public:
+    Placer(Context& context, Accessors& accessors, Meshes& meshes)
+        : context_(context), accessors_(accessors), meshes_(meshes) {}
+
+    void run(const Object& root) {
+        seen_.assign(context_.tables.nodes.elements.size(), false);
+        // Last in, first out: in reverse, so that nodes come in the order of the file.
+        std::vector<Step> open;
+        for (const Start& start : roots(root)) push(open, start.node, start.offset, {});
+        std::reverse(open.begin(), open.end());
+        while (!open.empty()) {
+            const Step step = open.back();
+            open.pop_back();
+            visit(step, open);
+        }
+    }
+
+private:
+    struct Start {
+        uint32_t node;
+        size_t offset;  ///< of what names it
+    };
+    struct Step {
+        uint32_t node;
+        Affine world_from_parent;
+    };
+
+    void push(std::vector<Step>& open, uint32_t node, size_t offset, const Affine& world_from_parent) {
+        if (seen_[node])
+            context_.source.fail(offset, "node " + std::to_string(node) +
+                                             " has been reached before: a node has at most "
+                                             "one parent and is not its own ancestor");
+        seen_[node] = true;
+        open.push_back({node, world_from_parent});
+    }
+
+    std::vector<Start> roots(const Object& root) {
+        const Tables& tables = context_.tables;
+        std::optional<uint32_t> scene = root.reference("scene", tables.scenes);
+        if (!scene && !tables.scenes.elements.empty()) scene = 0;
+        std::vector<Start> out;
+        if (scene) {
+            const Object object(context_.source, tables.scenes.elements[*scene], "a scene");
+            for (const Value value : object.array("nodes"))
+                out.push_back({read_reference(context_.source, value, "nodes", tables.nodes), value.offset()});
+            return out;
+        }
+        std::vector<bool> child(tables.nodes.elements.size());
+        for (const Value value : tables.nodes.elements)
+            for (const Value c : Object(context_.source, value, "a node").array("children"))
+                child[read_reference(context_.source, c, "children", tables.nodes)] = true;
+        for (uint32_t i = 0; i < child.size(); ++i)
+            if (!child[i]) out.push_back({i, tables.nodes.elements[i].offset()});
+        return out;
+    }
+
+    void visit(const Step& step, std::vector<Step>& open) {
+        const Object node(context_.source, context_.tables.nodes.elements[step.node], "a node");
+        const Affine world_from_node = step.world_from_parent * node_transform(context_, node);
+        if (!is_finite(world_from_node)) context_.source.fail(node.offset(), "the transform of this node overflows");
+        const std::string name(node.string_or("name", ""));
+        if (const auto mesh = node.reference("mesh", context_.tables.meshes))
+            place_mesh(node, *mesh, world_from_node, name);
+        if (const auto camera = node.reference("camera", context_.tables.cameras))
+            place_camera(*camera, world_from_node, name);
+        if (const auto punctual = node.extension("KHR_lights_punctual")) {
+            const uint32_t light = punctual->require_reference("light", context_.tables.lights);
+            const Object object(context_.source, context_.tables.lights.elements[light], "a light");
+            context_.assets.add_light(read_light(context_, object, world_from_node),
+                                      name.empty() ? name_of(object, "light", light) : name);
+        }
+        const auto first = static_cast<std::ptrdiff_t>(open.size());
+        for (const Value child : node.array("children"))
+            push(open, read_reference(context_.source, child, "children", context_.tables.nodes), child.offset(),
+                 world_from_node);
+        std::reverse(open.begin() + first, open.end());
+    }
+
+    void place_mesh(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name) {
+        if (node.has("skin")) context_.not_honoured("skins are not applied", node.offset_of("skin"));
+        if (const auto instancing = node.extension("EXT_mesh_gpu_instancing"))
+            for (const Affine& node_from_instance : read_instances(context_, accessors_, *instancing))
+                place_one(node, mesh, world_from_node * node_from_instance, name);
+        else
+            place_one(node, mesh, world_from_node, name);
+    }
+
+    void place_one(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name) {
+        if (!usable_inverse(world_from_node)) {  // singular, or not finite
+            context_.warn("nodes that are scaled to nothing are not rendered", node.offset());
+            return;
+        }
+        const std::vector<Meshes::Part>& parts = meshes_.parts(mesh);
+        context_.geometry.take(parts.size() * (sizeof(Instance) + name.size()), context_.source, node.offset());
+        for (const Meshes::Part& part : parts) {
+            const InstanceId instance =
+                context_.assets.add_instance({part.shape, part.look.material, world_from_node}, name);
+            if (!is_black(part.look.emission))
+                context_.assets.add_light(AreaLight{instance, part.look.emission, part.look.two_sided, 1}, name);
+        }
+    }
+
+    /// The first camera decides the shape of the picture, which has as many pixels as it has by default.
+    void place_camera(uint32_t camera, const Affine& world_from_node, const std::string& name) {
+        const Object object(context_.source, context_.tables.cameras.elements[camera], "a camera");
+        const PlacedCamera placed = read_camera(context_, object, world_from_node);
+        if (context_.loaded.scene.cameras.empty() && placed.aspect) {
+            RenderSettings& settings = context_.loaded.settings;
+            constexpr double kMostUneven = 8;
+            const double aspect = clamp_to(*placed.aspect, 1 / kMostUneven, kMostUneven);
+            const double root = std::sqrt(aspect), side = settings.width;
+            settings.width = static_cast<uint32_t>(side * root + 0.5);
+            settings.height = static_cast<uint32_t>(side / root + 0.5);
+        }
+        context_.assets.add_camera(placed.camera, name.empty() ? name_of(object, "camera", camera) : name);
+    }
+
+    Context& context_;
+    Accessors& accessors_;
+    Meshes& meshes_;
+    std::vector<bool> seen_;
+};
+
+}  // namespace
+
+Affine node_transform(Context& context, const Object& node) {
+    if (const auto matrix = node.numbers("matrix", 16, kNumber)) {
+        for (const std::string_view key : {"translation", "rotation", "scale"})
+            if (node.has(key))
+                context.warn("a node has a 'matrix' and " + quoted(key) + ": the matrix counts", node.offset_of(key));
+        const auto last = [&](size_t column) { return (*matrix)[4 * column + 3]; };
+        if (last(0) != 0 || last(1) != 0 || last(2) != 0 || last(3) != 1)
+            context.source.fail(node.offset_of("matrix"), "the last row of a 'matrix' must be 0, 0, 0, 1");
+        return from_columns(*matrix);
+    }
+    const auto t = node.numbers("translation", 3, kNumber), s = node.numbers("scale", 3, kNumber);
+    Affine out = read_rotation(context, node);
+    if (s) out = out * scaling((*s)[0], (*s)[1], (*s)[2]);
+    if (t)
+        for (size_t row = 0; row < 3; ++row) out.m[row][3] = (*t)[row];
+    return out;
+}
+
+std::vector<Affine> read_instances(Context& context, Accessors& accessors, const Object& extension) {
+    const Object attributes(context.source, extension.require("attributes"), "'attributes'");
+    std::optional<uint64_t> count;
+    const auto open = [&](std::string_view key, uint32_t components) -> std::optional<Accessor> {
+        const auto number = attributes.reference(key, context.tables.accessors);
+        if (!number) return std::nullopt;
+        const Accessor accessor = accessors.open(*number);
+        if (accessor.components != components)
+            context.source.fail(attributes.offset_of(key),
+                                quoted(key) + " must be vectors of " + std::to_string(components));
+        if (accessor.sparse.count)
+            context.not_honoured("sparse attributes of instances are read as zeros", accessor.offset);
+        if (count.value_or(accessor.count) != accessor.count)
+            context.source.fail(attributes.offset_of(key), quoted(key) + " has " + std::to_string(accessor.count) +
+                                                               " elements, the attributes before it have " +
+                                                               std::to_string(*count));
+        count = accessor.count;
+        return accessor;
+    };
+    const auto translations = open("TRANSLATION", 3), rotations = open("ROTATION", 4), scales = open("SCALE", 3);
+    context.geometry.take(count.value_or(0) * sizeof(Affine), context.source, extension.offset());
+    std::vector<Affine> out;
+    for (uint64_t i = 0; i < count.value_or(0); ++i) {
+        const auto part = [&](const std::optional<Accessor>& from, uint32_t c) {
+            return static_cast<double>(from->number(i, c));
+        };
+        Affine transform;
+        if (rotations)
+            transform =
+                rotation(context, {part(rotations, 0), part(rotations, 1), part(rotations, 2), part(rotations, 3)},
+                         rotations->offset);
+        if (scales) transform = transform * scaling(part(scales, 0), part(scales, 1), part(scales, 2));
+        if (translations)
+            for (uint32_t row = 0; row < 3; ++row) transform.m[row][3] = part(translations, row);
+        out.push_back(transform);
+    }
+    return out;
+}
+
+void place_nodes(Context& context, Accessors& accessors, Meshes& meshes, const Object& root) {
+    Placer(context, accessors, meshes).run(root);
+}
+
+}  // namespace steradian::gltf

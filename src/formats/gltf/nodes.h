@@ -1,0 +1,28 @@
+// The node hierarchy: where meshes, lights and cameras are.
+#pragma once
+
+#include "formats/gltf/meshes.h"
+
+namespace steradian::gltf {
+
+/// Places everything that the file's default scene holds: its first one where it does not say; without scenes, all
+/// nodes. Fails where a node has two parents or is its own ancestor.
+void place_nodes(Context& context, Accessors& accessors, Meshes& meshes, const Object& root);
+
+/// EXT_mesh_gpu_instancing: node_from_instance of each.
+std::vector<Affine> read_instances(Context& context, Accessors& accessors, const Object& extension);
+
+/// A node's own transform: its matrix, or its translation, rotation and scale.
+Affine node_transform(Context& context, const Object& node);
+
+/// KHR_lights_punctual. The light shines along -z of the node.
+Light read_light(Context& context, const Object& light, const Affine& world_from_node);
+
+/// Looks along -z of the node; scale is not the camera's. `aspect`: width over height, where the camera says it.
+struct PlacedCamera {
+    Camera camera;
+    std::optional<double> aspect;
+};
+PlacedCamera read_camera(Context& context, const Object& camera, const Affine& world_from_node);
+
+}  // namespace steradian::gltf

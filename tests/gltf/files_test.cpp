@@ -1,0 +1,102 @@
+// Files around a glTF file, the environment that the caller chooses, and the validator's suite where it is there.
+#include <filesystem>
+
+#include "gltf_builder.h"
+#include "support/support.h"
+
+namespace steradian {
+namespace {
+
+using namespace test;
+
+void write(const std::string& path, std::string_view bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+std::string with_buffer(const std::string& uri) {
+    return "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 36, \"uri\": \"" + uri +
+           "\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"accessors\": [{\"bufferView\": 0, "
+           "\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}], " + one_mesh(0) + "}";
+}
+
+class GltfFiles : public ::testing::Test {
+protected:
+    GltfFiles() {
+        std::filesystem::create_directory(folder_.path() / "scene");
+        const std::string_view bytes(reinterpret_cast<const char*>(kTriangle.data()), 36);
+        write(folder_.file("scene/a b.bin"), bytes);
+        write(folder_.file("outside.bin"), bytes);
+        std::filesystem::create_symlink(folder_.path() / "outside.bin", folder_.path() / "scene" / "link.bin");
+    }
+    Result<LoadedScene> load(const std::string& uri, const LoadOptions& options = {}) {
+        write(folder_.file("scene/m.gltf"), with_buffer(uri));
+        return load_scene(folder_.file("scene/m.gltf"), options);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(GltfFiles, NamesInsideTheFolderAreRead) {
+    const auto loaded = load("a%20b.bin");
+    ASSERT_TRUE(loaded.ok()) << loaded.error().str();
+    EXPECT_EQ(loaded->files.size(), 2u);
+    EXPECT_TRUE(load("a b.bin").ok());
+    // A model that nothing shines on, without a camera: it gets both, and a floor.
+    EXPECT_EQ(loaded->scene.cameras.size(), 1u);
+    EXPECT_EQ(loaded->scene.lights.size(), 3u);
+}
+
+TEST_F(GltfFiles, NamesOutsideAreRefusedUnlessAllowed) {
+    const std::string outside = folder_.file("outside.bin");
+    for (const std::string& uri : {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"), outside,
+                                   std::string("link.bin"), std::string("x/../../outside.bin")}) {
+        const auto loaded = load(uri);
+        ASSERT_FALSE(loaded.ok()) << uri;
+        EXPECT_EQ(loaded.error().where.pointer, "/buffers/0/uri") << loaded.error().str();
+    }
+    LoadOptions options;
+    options.allow_outside_paths = true;
+    EXPECT_TRUE(load("../outside.bin", options).ok());
+    for (const char* uri : {"http://host/a.bin", "https://host/a.bin", "file:///etc/passwd", "ftp://host/x"})
+        EXPECT_FALSE(load(uri, options).ok()) << uri;
+}
+
+TEST_F(GltfFiles, TheCallerChoosesTheEnvironment) {
+    LoadOptions options;
+    options.environment.replace = Rgb{1, 2, 3};
+    options.environment.rotation = 30;
+    options.environment.scale = 2;
+    const auto loaded = load("a b.bin", options);
+    ASSERT_TRUE(loaded.ok());
+    ASSERT_EQ(loaded->scene.lights.size(), 1u);
+    const auto& light = std::get<EnvironmentLight>(loaded->scene.lights[0]);
+    EXPECT_EQ(light.radiance, (Rgb{2, 4, 6}));
+    EXPECT_EQ(light.rotation, 30);
+    EXPECT_EQ(loaded->scene.instances.size(), 1u);  // no floor
+    options.environment = {.replace = EnvironmentOptions::None{}};
+    EXPECT_TRUE(load("a b.bin", options)->scene.lights.empty());
+    options.environment = {.replace = folder_.file("nothing.hdr")};
+    EXPECT_FALSE(load("a b.bin", options).ok());
+}
+
+/// What has no errors loads; whatever else comes back names the file, and a place in it where there is one.
+TEST(GltfSuite, Validator) {
+    const auto shared = shared_folder();
+    if (!shared || !std::filesystem::exists(*shared / "suites/gltf_validator"))
+        GTEST_SKIP() << "suites/gltf_validator is not there";
+    size_t files = 0, refused = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(*shared / "suites/gltf_validator/base")) {
+        const std::string path = entry.path().string();
+        if (!path.ends_with(".gltf") && !path.ends_with(".glb")) continue;
+        ++files;
+        const std::string report = slurp(path + ".report.json");
+        const auto loaded = load_scene(path);
+        if (loaded.ok()) continue;
+        ++refused;
+        EXPECT_EQ(report.find("\"numErrors\": 0"), std::string::npos) << loaded.error().str();
+        EXPECT_FALSE(loaded.error().where.file.empty()) << path;
+        EXPECT_FALSE(loaded.error().message.empty()) << path;
+    }
+    EXPECT_GT(files, 200u);
+    EXPECT_GT(refused, 30u);
+}
+
+}  // namespace
+}  // namespace steradian

@@ -1,0 +1,177 @@
+// Nodes, cameras, lights and materials as parts of a scene.
+#include <cmath>
+
+#include "gltf_builder.h"
+#include "math/transform.h"
+
+namespace steradian {
+namespace {
+
+using namespace test;
+
+std::string with_node(const std::string& node, const std::string& more = {}) {
+    GltfBuilder b;
+    const int p = b.floats("VEC3", 3, kTriangle);
+    return b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
+                  "}, \"material\": 0}]}], \"nodes\": [" + node + "]" +
+                  (more.empty() ? std::string(", \"materials\": [{}]") : ", " + more));
+}
+
+Vec3d moved(const std::string& node, Vec3 p) {
+    const LoadedScene loaded = good_gltf(with_node(node));
+    return transform_point(loaded.scene.instances.at(0).world_from_object, p);
+}
+
+void expect_near(Vec3d a, Vec3d b) {
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-12);
+}
+
+TEST(GltfNode, ScaleThenRotationThenTranslation) {
+    const double h = std::sqrt(0.5);
+    // A quarter turn about +z takes (2 · 1, 0, 0) to (0, 2, 0).
+    expect_near(moved("{\"mesh\": 0, \"translation\": [10, 20, 30], \"scale\": [2, 3, 4], \"rotation\": [0, 0, "
+                      "0.7071067811865475244, 0.7071067811865475244]}",
+                      {1, 0, 0}),
+                {10, 22, 30});
+    EXPECT_GT(h, 0);
+    expect_near(moved("{\"mesh\": 0, \"matrix\": [0,2,0,0, -3,0,0,0, 0,0,4,0, 10,20,30,1]}", {1, 1, 1}), {7, 22, 34});
+    // A mirror image.
+    expect_near(moved("{\"mesh\": 0, \"scale\": [-1, 1, 1]}", {1, 2, 3}), {-1, 2, 3});
+}
+
+TEST(GltfNode, ChildrenFollowTheirParents) {
+    expect_near(moved("{\"children\": [1], \"translation\": [1, 0, 0], \"scale\": [2, 2, 2]}, {\"mesh\": 0, "
+                      "\"translation\": [0, 5, 0]}",
+                      {1, 0, 0}),
+                {3, 10, 0});
+}
+
+TEST(GltfNode, CyclesAndSecondParentsAreRefused) {
+    const std::string scene = "\"materials\": [{}], \"scenes\": [{\"nodes\": [0]}], \"scene\": 0";
+    expect_refused(with_node("{\"children\": [1]}, {\"children\": [0]}", scene), "/nodes/1/children/0", "reached before");
+    expect_refused(with_node("{\"children\": [1, 1]}, {\"mesh\": 0}", scene), "/nodes/0/children/1", "reached before");
+}
+
+TEST(GltfNode, AHundredThousandLevelsDoNotOverflowTheStack) {
+    std::string nodes = "{\"children\": [1]}";
+    constexpr int kDepth = 100000;
+    for (int i = 1; i < kDepth; ++i) nodes += ",{\"children\": [" + std::to_string(i + 1) + "]}";
+    EXPECT_EQ(good_gltf(with_node(nodes + ",{\"mesh\": 0}")).scene.instances.size(), 1u);
+}
+
+TEST(GltfNode, InstancesOfGpuInstancing) {
+    GltfBuilder b;
+    const int p = b.floats("VEC3", 3, kTriangle), t = b.floats("VEC3", 3, {1, 0, 0, 0, 2, 0});
+    const int s = b.accessor<float>("VEC3", 5126, 3, {2, 2, 2, 1, 1, 1});
+    const LoadedScene loaded = good_gltf(b.text(
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
+        "}}]}], \"nodes\": [{\"mesh\": 0, \"translation\": [0, 0, 9], \"extensions\": {\"EXT_mesh_gpu_instancing\": "
+        "{\"attributes\": {\"TRANSLATION\": " + std::to_string(t) + ", \"SCALE\": " + std::to_string(s) + "}}}}]"));
+    ASSERT_EQ(loaded.scene.instances.size(), 2u);
+    expect_near(transform_point(loaded.scene.instances[0].world_from_object, Vec3{1, 1, 1}), {3, 2, 11});
+    expect_near(transform_point(loaded.scene.instances[1].world_from_object, Vec3{1, 1, 1}), {1, 3, 10});
+}
+
+TEST(GltfCamera, LooksAlongMinusZAndShapesThePicture) {
+    const LoadedScene loaded = good_gltf(with_node(
+        "{\"camera\": 0, \"translation\": [1, 2, 3]}",
+        "\"materials\": [{}], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 1.5707963267948966, "
+        "\"aspectRatio\": 4, \"znear\": 1}}]"));
+    const auto& camera = std::get<PerspectiveCamera>(loaded.scene.cameras.at(0));
+    EXPECT_EQ(camera.position, (Vec3{1, 2, 3}));
+    EXPECT_EQ(camera.look_at, (Vec3{1, 2, 2}));
+    EXPECT_FLOAT_EQ(camera.vertical_fov, 90);
+    EXPECT_EQ(loaded.settings.width, 1024u);
+    EXPECT_EQ(loaded.settings.height, 256u);
+}
+
+std::string with_light(const std::string& light) {
+    return with_node("{\"translation\": [0, 3, 0], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}",
+                     "\"materials\": [{}], \"extensions\": {\"KHR_lights_punctual\": {\"lights\": [" + light + "]}}");
+}
+
+TEST(GltfLight, Kinds) {
+    const LoadedScene point = good_gltf(with_light("{\"type\": \"point\", \"intensity\": 6, \"color\": [1, 0.5, 0]}"));
+    EXPECT_EQ(std::get<PointLight>(point.scene.lights.at(0)).intensity, (Rgb{6, 3, 0}));
+    EXPECT_EQ(std::get<PointLight>(point.scene.lights.at(0)).position, (Vec3{0, 3, 0}));
+    const LoadedScene sun = good_gltf(with_light("{\"type\": \"directional\"}"));
+    EXPECT_EQ(std::get<DirectionalLight>(sun.scene.lights.at(0)).direction, (Vec3{0, 0, -1}));
+    const LoadedScene spot = good_gltf(with_light("{\"type\": \"spot\", \"spot\": {}}"));
+    const auto& s = std::get<SpotLight>(spot.scene.lights.at(0));
+    EXPECT_FLOAT_EQ(s.outer_angle, 45);
+    EXPECT_EQ(s.inner_angle, 0);
+    EXPECT_EQ(s.falloff, SpotFalloff::squared);
+    LoadOptions options;
+    options.gltf_light_units = GltfLightUnits::photometric;
+    const LoadedScene lumens = good_gltf(with_light("{\"type\": \"point\", \"intensity\": 683}"), options);
+    EXPECT_FLOAT_EQ(std::get<PointLight>(lumens.scene.lights.at(0)).intensity.r, 1);
+    expect_refused(with_light("{\"type\": \"sun\"}"), "/extensions/KHR_lights_punctual/lights/0/type", "sun");
+}
+
+LoadedScene with_material(const std::string& material) {
+    return good_gltf(with_node("{\"mesh\": 0}", "\"materials\": [{" + material + "}]"));
+}
+template <class M>
+M material_of(const LoadedScene& loaded) {
+    return std::get<M>(loaded.scene.materials[index(loaded.scene.instances.at(0).material)]);
+}
+
+TEST(GltfMaterial, DefaultIsRoughWhiteMetal) {
+    const auto m = material_of<OpenPbrMaterial>(with_material(""));
+    EXPECT_EQ(m.base_color.value, (Rgb{1, 1, 1}));
+    EXPECT_EQ(m.base_metalness.value, 1);
+    EXPECT_EQ(m.specular_roughness.value, 1);
+    EXPECT_EQ(m.specular_ior, 1.5f);
+}
+
+TEST(GltfMaterial, FactorsAndAlpha) {
+    const std::string pbr = "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.1, 0.2, 0.3, 0.4], \"metallicFactor\": "
+                            "0.5, \"roughnessFactor\": 0.6}";
+    const auto opaque = material_of<OpenPbrMaterial>(with_material(pbr));
+    EXPECT_EQ(opaque.base_color.value, (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(opaque.base_metalness.value, 0.5f);
+    EXPECT_EQ(opaque.specular_roughness.value, 0.6f);
+    EXPECT_EQ(opaque.geometry_opacity.value, 1);
+    EXPECT_EQ(material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"BLEND\"")).geometry_opacity.value, 0.4f);
+    const auto mask = material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.3"));
+    EXPECT_EQ(mask.geometry_opacity_cutoff, 0.3f);
+    EXPECT_EQ(mask.geometry_opacity.value, 0.4f);
+}
+
+TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
+    const std::string start = "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0, \"metallicFactor\": ";
+    EXPECT_EQ(material_of<ConductorMaterial>(with_material(start + "1}")).roughness.value, (Vec2{0, 0}));
+    const std::string glass = start + "0, \"baseColorFactor\": [1, 0.5, 0.25, 1]}, \"extensions\": "
+                                      "{\"KHR_materials_transmission\": {\"transmissionFactor\": 1}, "
+                                      "\"KHR_materials_ior\": {\"ior\": 1.3}";
+    const auto solid = material_of<GlassMaterial>(with_material(glass + ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}}"));
+    EXPECT_EQ(solid.eta, 1.3f);
+    EXPECT_EQ(solid.transmittance, (Rgb{1, 0.5f, 0.25f}));
+    EXPECT_EQ(material_of<ThinGlassMaterial>(with_material(glass + "}")).eta, 1.3f);
+    EXPECT_TRUE(material_of<DiffuseMaterial>(
+                    with_material(start + "0}, \"extensions\": {\"KHR_materials_specular\": {\"specularFactor\": 0}}"))
+                    .two_sided);
+}
+
+TEST(GltfMaterial, AnisotropyGivesTheSameTwoAlphas) {
+    const auto m = material_of<OpenPbrMaterial>(
+        with_material("\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"extensions\": "
+                      "{\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.8}}"));
+    // OpenPBR: along = r² sqrt(2 / (1 + (1 - a)²)), across = (1 - a) along.
+    const double k = 1 - double(m.specular_roughness_anisotropy), r = m.specular_roughness.value;
+    const double along = r * r * std::sqrt(2 / (1 + k * k));
+    EXPECT_NEAR(along, 0.25 + 0.75 * 0.64, 1e-6);
+    EXPECT_NEAR(k * along, 0.25, 1e-6);
+}
+
+TEST(GltfMaterial, EmissionIsALight) {
+    const LoadedScene loaded = with_material(
+        "\"emissiveFactor\": [1, 0.5, 0], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 4}}");
+    const auto& light = std::get<AreaLight>(loaded.scene.lights.at(0));
+    EXPECT_EQ(light.radiance, (Rgb{4, 2, 0}));
+    EXPECT_FALSE(light.two_sided);
+    EXPECT_TRUE(std::get<AreaLight>(with_material("\"emissiveFactor\": [1, 1, 1], \"doubleSided\": true").scene.lights.at(0)).two_sided);
+}
+
+}  // namespace
+}  // namespace steradian
