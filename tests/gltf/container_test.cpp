@@ -38,8 +38,8 @@ TEST(GltfContainer, LiesInTheHeaderAreRefusedAtTheirByte) {
         const auto loaded = load_gltf(bytes);
         return loaded ? std::string("loads") : loaded.error().where.str();
     };
-    EXPECT_EQ(at(4, 1), "test.gltf: byte 4");             // version
-    EXPECT_EQ(at(8, 0xffffffffu), "test.gltf: byte 8");   // length of the file
+    EXPECT_EQ(at(4, 1), "test.gltf: byte 4");            // version
+    EXPECT_EQ(at(8, 0xffffffffu), "test.gltf: byte 8");  // length of the file
     EXPECT_EQ(at(8, 3), "test.gltf: byte 8");
     EXPECT_EQ(at(12, 0xfffffff0u), "test.gltf: byte 12");  // length of the first chunk
     EXPECT_EQ(at(16, 0x004e4942), "test.gltf: byte 12");   // a binary chunk first
@@ -53,7 +53,8 @@ TEST(GltfContainer, BytesBehindTheEndAreAWarning) {
 TEST(GltfUri, PercentSigns) {
     EXPECT_EQ(gltf::percent_decoded("a%20b%2fc"), "a b/c");
     EXPECT_EQ(gltf::percent_decoded("%2e%2E/x"), "../x");
-    for (const char* wrong : {"%", "%2", "a%zz", "100%"}) EXPECT_EQ(gltf::percent_decoded(wrong), std::nullopt) << wrong;
+    for (const char* wrong : {"%", "%2", "a%zz", "100%"})
+        EXPECT_EQ(gltf::percent_decoded(wrong), std::nullopt) << wrong;
 }
 
 TEST(GltfUri, Base64OfAllLengths) {
@@ -107,7 +108,8 @@ TEST(GltfErrors, AssetAndExtensions) {
     expect_refused("{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_texture_basisu\"]}",
                    "/extensionsRequired/0", "'KHR_texture_basisu'");
     const LoadedScene loaded = good_gltf(
-        "{\"asset\": {\"version\": \"2.0\"}, \"extensionsUsed\": [\"X_y\"], \"nodes\": [{\"extensions\": {\"X_y\": {}}},"
+        "{\"asset\": {\"version\": \"2.0\"}, \"extensionsUsed\": [\"X_y\"], \"nodes\": [{\"extensions\": {\"X_y\": "
+        "{}}},"
         " {\"extras\": {\"extensions\": {\"Z_z\": {}}}}]}");
     ASSERT_EQ(loaded.fidelity.warnings().size(), 1u);
     EXPECT_EQ(loaded.fidelity.warnings()[0].where.pointer, "/nodes/0/extensions/X_y");

@@ -51,9 +51,9 @@ std::string sparse_file(const std::vector<uint16_t>& indices, bool with_base) {
     if (with_base)
         base += "\"bufferView\": " +
                 std::to_string(b.view({reinterpret_cast<const char*>(kTriangle.data()), kTriangle.size() * 4})) + ", ";
-    const int a = b.raw_accessor(base + "\"sparse\": {\"count\": 2, \"indices\": {\"bufferView\": " +
-                                 std::to_string(i) + ", \"componentType\": 5123}, \"values\": {\"bufferView\": " +
-                                 std::to_string(v) + "}}");
+    const int a =
+        b.raw_accessor(base + "\"sparse\": {\"count\": 2, \"indices\": {\"bufferView\": " + std::to_string(i) +
+                       ", \"componentType\": 5123}, \"values\": {\"bufferView\": " + std::to_string(v) + "}}");
     return b.text(one_mesh(a));
 }
 
@@ -88,8 +88,8 @@ TEST(GltfAccessor, WhatLeavesTheBufferIsRefused) {
 }
 
 TEST(GltfAccessor, ZerosThatNobodyStoredAreCountedBeforeTheyAreMade) {
-    expect_refused(with_accessor("\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4000000000"), "/meshes/0/primitives/0",
-                   "MiB", ErrorCode::resources);
+    expect_refused(with_accessor("\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4000000000"),
+                   "/meshes/0/primitives/0", "MiB", ErrorCode::resources);
 }
 
 TEST(GltfMesh, StripsAndFansAsTheSpecificationHasThem) {
@@ -111,7 +111,8 @@ TEST(GltfMesh, IndicesOfAllWidthsAndTheirFaults) {
         const LoadedScene loaded = good_gltf(b.text(one_mesh(p, ", \"indices\": " + std::to_string(i))));
         EXPECT_EQ(only_mesh(loaded).indices, (std::vector<uint32_t>{2, 1, 0}));
     }
-    const int out = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 3}), restart = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 65535});
+    const int out = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 3}),
+              restart = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 65535});
     const std::string pointer = "/meshes/0/primitives/0/indices";
     expect_refused(b.text(one_mesh(p, ", \"indices\": " + std::to_string(out))), pointer, "is 3");
     expect_refused(b.text(one_mesh(p, ", \"indices\": " + std::to_string(restart))), pointer, "is 65535");

@@ -14,7 +14,8 @@ void write(const std::string& path, std::string_view bytes) { std::ofstream(path
 std::string with_buffer(const std::string& uri) {
     return "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 36, \"uri\": \"" + uri +
            "\"}], \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"accessors\": [{\"bufferView\": 0, "
-           "\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}], " + one_mesh(0) + "}";
+           "\"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}], " +
+           one_mesh(0) + "}";
 }
 
 class GltfFiles : public ::testing::Test {

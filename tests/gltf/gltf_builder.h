@@ -22,8 +22,7 @@ inline std::string base64(std::string_view bytes) {
         uint32_t bits = 0;
         for (size_t k = 0; k < 3; ++k)
             bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (size_t k = 0; k < 4; ++k)
-            out += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+        for (size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return out;
 }
@@ -38,10 +37,9 @@ public:
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
         views_.push_back("{\"buffer\": 0, \"byteOffset\": " + std::to_string(begin) +
                          ", \"byteLength\": " + std::to_string(values.size() * sizeof(T)) + "}");
-        return raw_accessor("\"bufferView\": " + std::to_string(views_.size() - 1) +
-                            ", \"componentType\": " + std::to_string(component) +
-                            ", \"count\": " + std::to_string(values.size() / per_element) + ", \"type\": \"" +
-                            std::string(type) + "\"" + std::string(more));
+        return raw_accessor("\"bufferView\": " + std::to_string(views_.size() - 1) + ", \"componentType\": " +
+                            std::to_string(component) + ", \"count\": " + std::to_string(values.size() / per_element) +
+                            ", \"type\": \"" + std::string(type) + "\"" + std::string(more));
     }
     int floats(std::string_view type, size_t per_element, const std::vector<float>& values) {
         return accessor(type, 5126, per_element, values);
@@ -75,8 +73,8 @@ public:
     std::string binary(const std::string& members) const {
         GltfBuilder without = *this;
         without.bytes_.clear();
-        std::string json = without.text(members + (members.empty() ? "" : ",") + "\"buffers\": [{\"byteLength\": " +
-                                        std::to_string(bytes_.size()) + "}]");
+        std::string json = without.text(members + (members.empty() ? "" : ",") +
+                                        "\"buffers\": [{\"byteLength\": " + std::to_string(bytes_.size()) + "}]");
         json.resize((json.size() + 3) / 4 * 4, ' ');
         std::string data = bytes_;
         data.resize((data.size() + 3) / 4 * 4, '\0');

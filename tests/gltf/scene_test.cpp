@@ -48,7 +48,8 @@ TEST(GltfNode, ChildrenFollowTheirParents) {
 
 TEST(GltfNode, CyclesAndSecondParentsAreRefused) {
     const std::string scene = "\"materials\": [{}], \"scenes\": [{\"nodes\": [0]}], \"scene\": 0";
-    expect_refused(with_node("{\"children\": [1]}, {\"children\": [0]}", scene), "/nodes/1/children/0", "reached before");
+    expect_refused(with_node("{\"children\": [1]}, {\"children\": [0]}", scene), "/nodes/1/children/0",
+                   "reached before");
     expect_refused(with_node("{\"children\": [1, 1]}, {\"mesh\": 0}", scene), "/nodes/0/children/1", "reached before");
 }
 
@@ -66,17 +67,18 @@ TEST(GltfNode, InstancesOfGpuInstancing) {
     const LoadedScene loaded = good_gltf(b.text(
         "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
         "}}]}], \"nodes\": [{\"mesh\": 0, \"translation\": [0, 0, 9], \"extensions\": {\"EXT_mesh_gpu_instancing\": "
-        "{\"attributes\": {\"TRANSLATION\": " + std::to_string(t) + ", \"SCALE\": " + std::to_string(s) + "}}}}]"));
+        "{\"attributes\": {\"TRANSLATION\": " +
+        std::to_string(t) + ", \"SCALE\": " + std::to_string(s) + "}}}}]"));
     ASSERT_EQ(loaded.scene.instances.size(), 2u);
     expect_near(transform_point(loaded.scene.instances[0].world_from_object, Vec3{1, 1, 1}), {3, 2, 11});
     expect_near(transform_point(loaded.scene.instances[1].world_from_object, Vec3{1, 1, 1}), {1, 3, 10});
 }
 
 TEST(GltfCamera, LooksAlongMinusZAndShapesThePicture) {
-    const LoadedScene loaded = good_gltf(with_node(
-        "{\"camera\": 0, \"translation\": [1, 2, 3]}",
-        "\"materials\": [{}], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 1.5707963267948966, "
-        "\"aspectRatio\": 4, \"znear\": 1}}]"));
+    const LoadedScene loaded = good_gltf(with_node("{\"camera\": 0, \"translation\": [1, 2, 3]}",
+                                                   "\"materials\": [{}], \"cameras\": [{\"type\": \"perspective\", "
+                                                   "\"perspective\": {\"yfov\": 1.5707963267948966, "
+                                                   "\"aspectRatio\": 4, \"znear\": 1}}]"));
     const auto& camera = std::get<PerspectiveCamera>(loaded.scene.cameras.at(0));
     EXPECT_EQ(camera.position, (Vec3{1, 2, 3}));
     EXPECT_EQ(camera.look_at, (Vec3{1, 2, 2}));
@@ -125,15 +127,18 @@ TEST(GltfMaterial, DefaultIsRoughWhiteMetal) {
 }
 
 TEST(GltfMaterial, FactorsAndAlpha) {
-    const std::string pbr = "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.1, 0.2, 0.3, 0.4], \"metallicFactor\": "
-                            "0.5, \"roughnessFactor\": 0.6}";
+    const std::string pbr =
+        "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.1, 0.2, 0.3, 0.4], \"metallicFactor\": "
+        "0.5, \"roughnessFactor\": 0.6}";
     const auto opaque = material_of<OpenPbrMaterial>(with_material(pbr));
     EXPECT_EQ(opaque.base_color.value, (Rgb{0.1f, 0.2f, 0.3f}));
     EXPECT_EQ(opaque.base_metalness.value, 0.5f);
     EXPECT_EQ(opaque.specular_roughness.value, 0.6f);
     EXPECT_EQ(opaque.geometry_opacity.value, 1);
-    EXPECT_EQ(material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"BLEND\"")).geometry_opacity.value, 0.4f);
-    const auto mask = material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.3"));
+    EXPECT_EQ(material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"BLEND\"")).geometry_opacity.value,
+              0.4f);
+    const auto mask =
+        material_of<OpenPbrMaterial>(with_material(pbr + ", \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.3"));
     EXPECT_EQ(mask.geometry_opacity_cutoff, 0.3f);
     EXPECT_EQ(mask.geometry_opacity.value, 0.4f);
 }
@@ -141,10 +146,12 @@ TEST(GltfMaterial, FactorsAndAlpha) {
 TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
     const std::string start = "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0, \"metallicFactor\": ";
     EXPECT_EQ(material_of<ConductorMaterial>(with_material(start + "1}")).roughness.value, (Vec2{0, 0}));
-    const std::string glass = start + "0, \"baseColorFactor\": [1, 0.5, 0.25, 1]}, \"extensions\": "
-                                      "{\"KHR_materials_transmission\": {\"transmissionFactor\": 1}, "
-                                      "\"KHR_materials_ior\": {\"ior\": 1.3}";
-    const auto solid = material_of<GlassMaterial>(with_material(glass + ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}}"));
+    const std::string glass = start +
+                              "0, \"baseColorFactor\": [1, 0.5, 0.25, 1]}, \"extensions\": "
+                              "{\"KHR_materials_transmission\": {\"transmissionFactor\": 1}, "
+                              "\"KHR_materials_ior\": {\"ior\": 1.3}";
+    const auto solid =
+        material_of<GlassMaterial>(with_material(glass + ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}}"));
     EXPECT_EQ(solid.eta, 1.3f);
     EXPECT_EQ(solid.transmittance, (Rgb{1, 0.5f, 0.25f}));
     EXPECT_EQ(material_of<ThinGlassMaterial>(with_material(glass + "}")).eta, 1.3f);
@@ -166,11 +173,14 @@ TEST(GltfMaterial, AnisotropyGivesTheSameTwoAlphas) {
 
 TEST(GltfMaterial, EmissionIsALight) {
     const LoadedScene loaded = with_material(
-        "\"emissiveFactor\": [1, 0.5, 0], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": 4}}");
+        "\"emissiveFactor\": [1, 0.5, 0], \"extensions\": {\"KHR_materials_emissive_strength\": {\"emissiveStrength\": "
+        "4}}");
     const auto& light = std::get<AreaLight>(loaded.scene.lights.at(0));
     EXPECT_EQ(light.radiance, (Rgb{4, 2, 0}));
     EXPECT_FALSE(light.two_sided);
-    EXPECT_TRUE(std::get<AreaLight>(with_material("\"emissiveFactor\": [1, 1, 1], \"doubleSided\": true").scene.lights.at(0)).two_sided);
+    EXPECT_TRUE(
+        std::get<AreaLight>(with_material("\"emissiveFactor\": [1, 1, 1], \"doubleSided\": true").scene.lights.at(0))
+            .two_sided);
 }
 
 }  // namespace

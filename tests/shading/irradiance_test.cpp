@@ -210,7 +210,8 @@ TEST(Irradiance, EllipsoidsByTheirOutline) {
 TEST(Irradiance, DeltaLights) {
     Scene scene;
     scene.lights = {PointLight{{0, 2, 1}, {8, 4, 2}}, SpotLight{{0, 2, 0}, {0, -3, 0}, {8, 8, 8}, 20, 40},
-                    DirectionalLight{{0, -2, 0}, {3, 2, 1}}};
+                    DirectionalLight{{0, -2, 0}, {3, 2, 1}},
+                    SpotLight{{0, 2, 0}, {0, -3, 0}, {8, 8, 8}, 20, 40, SpotFalloff::squared}};
     const World world(std::move(scene));
     const SurfacePoint from = test::receiver({}, {0, 1, 0});
     const auto point = sample_light(world.shading, 0, from, 0, {});
@@ -223,9 +224,10 @@ TEST(Irradiance, DeltaLights) {
 
     // On the axis, inside the inner cone, halfway in the cosine (smoothstep gives 1/2), and outside.
     const double ci = std::cos(20 * std::numbers::pi / 180), co = std::cos(40 * std::numbers::pi / 180);
-    const auto spot_at = [&](double cosine) {
+    const auto spot_at = [&](double cosine, uint32_t light = 1) {
         const double x = 2 * std::sqrt(1 / (cosine * cosine) - 1);
-        const auto s = sample_light(world.shading, 1, test::receiver({static_cast<float>(x), 0, 0}, {0, 1, 0}), 0, {});
+        const auto s =
+            sample_light(world.shading, light, test::receiver({static_cast<float>(x), 0, 0}, {0, 1, 0}), 0, {});
         return s ? s->radiance.g * (4 + x * x) : 0;
     };
     EXPECT_NEAR(spot_at(1), 8, 1e-5);
@@ -233,6 +235,9 @@ TEST(Irradiance, DeltaLights) {
     EXPECT_NEAR(spot_at((ci + co) / 2), 4, 1e-5);
     EXPECT_NEAR(spot_at(co + (ci - co) / 4), 8 * (3.0 / 16 - 2.0 / 64), 1e-5);
     EXPECT_EQ(spot_at(co - 1e-3), 0);
+    EXPECT_NEAR(spot_at(co + (ci - co) / 4, 3), 8.0 / 16, 1e-5);
+    EXPECT_NEAR(spot_at(ci + 1e-3, 3), 8, 1e-5);
+    EXPECT_EQ(spot_at(co - 1e-3, 3), 0);
 
     const auto sun = sample_light(world.shading, 2, from, 0, {});
     ASSERT_TRUE(sun);

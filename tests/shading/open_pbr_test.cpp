@@ -147,6 +147,12 @@ TEST(OpenPbr, OpacityLetsPass) {
         EXPECT_TRUE(s->transmitted);
     }
     EXPECT_NEAR(passed, 0.75 * n, 5 * std::sqrt(n * 0.75 * 0.25));
+    // A cut-out is there or not: an opacity at the cutoff is, one below it is not.
+    m.geometry_opacity_cutoff = 0.25f;
+    EXPECT_EQ(eval(OneMaterial(m).bsdf(), wo, wi).f_cos.g, eval(solid.bsdf(), wo, wi).f_cos.g);
+    m.geometry_opacity_cutoff = 0.26f;
+    EXPECT_TRUE(is_specular(OneMaterial(m).bsdf()));
+    m.geometry_opacity_cutoff = 0;
     m.geometry_opacity.value = 0;
     const OneMaterial nothing(m);
     EXPECT_TRUE(is_specular(nothing.bsdf()));
