@@ -252,8 +252,8 @@ TEST_F(SceneFiles, RelativePathsStartAtTheSceneFile) {
 
 TEST_F(SceneFiles, TheFormatIsToldByTheExtension) {
     const auto error = [&](const std::string& name) { return load_scene(folder_.file(name)).error(); };
-    EXPECT_NE(error("scene.gltf").message.find("unknown kind of scene file '.gltf'"), std::string::npos);
-    EXPECT_EQ(error("scene.gltf").hint, "expected one of .json, .obj, .ply");
+    EXPECT_NE(error("scene.fbx").message.find("unknown kind of scene file '.fbx'"), std::string::npos);
+    EXPECT_EQ(error("scene.fbx").hint, "expected one of .json, .gltf, .glb, .obj, .ply");
     EXPECT_NE(error("scene.jsn").hint.find("did you mean '.json'?"), std::string::npos);
     EXPECT_NE(error("scene").message.find("needs an extension"), std::string::npos);
     EXPECT_NE(error("missing.json").message.find("No such file"), std::string::npos);
