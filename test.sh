@@ -81,7 +81,7 @@ quick() {
     run_tests 'Tests of parsers and kernels with these checks' asan --tests-regex "^($(IFS='|' && echo "${sanitized_quickly[*]}"))\\."
 }
 # The layers that read foreign bytes, what they stand on, and the ray kernels, which look at memory in many ways.
-sanitized_quickly=(base math image formats meshes accel)
+sanitized_quickly=(base math image formats gltf meshes accel)
 
 all() {
     part 'Install missing packages' "$repository/tools/setup.sh" all || return 0
