@@ -20,7 +20,8 @@ uint32_t half_of(uint32_t size) { return size > 1 ? size / 2 : 1; }
 /// 2^-24, the rest has 11 bits: adding a power of two that is so much larger makes the addition round there.
 uint16_t to_half(float x) {
     if (!(x > 0)) return 0;
-    if (x < 0x1p-14f) return static_cast<uint16_t>(std::bit_cast<uint32_t>(x + 0x1p-1f) - std::bit_cast<uint32_t>(0x1p-1f));
+    if (x < 0x1p-14f)
+        return static_cast<uint16_t>(std::bit_cast<uint32_t>(x + 0x1p-1f) - std::bit_cast<uint32_t>(0x1p-1f));
     const uint32_t bits = std::bit_cast<uint32_t>(x), rounded = bits + 0xfffu + (bits >> 13 & 1u);
     return static_cast<uint16_t>((rounded >> 13) - (112u << 10));
 }

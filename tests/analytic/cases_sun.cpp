@@ -56,8 +56,8 @@ void add_light(std::vector<Case>& out) {
     // As long as the whole disc is above the horizon, by the cosine of its middle, however large it is.
     for (const double diameter : {0.5, 60.0}) {
         const std::string id = "sun_" + std::to_string(int(diameter * 2)) + "_halves_of_a_degree_floor";
-        out.push_back(noisy(whole(id, "ρ/π E cos θ, as from a point", floor_scene().light(sun({0.6, -0.8, 0}, diameter)),
-                                  facing * 0.8)));
+        out.push_back(noisy(whole(id, "ρ/π E cos θ, as from a point",
+                                  floor_scene().light(sun({0.6, -0.8, 0}, diameter)), facing * 0.8)));
     }
     // Straight above, half behind a plate whose edge is at an angle from the middle of the disc.
     for (const double edge : {-8.0, 0.0, 5.0}) {

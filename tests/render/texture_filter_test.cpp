@@ -108,8 +108,7 @@ TEST(Mix, LiesBetweenItsMaterials) {
         Scene s;
         const MaterialId red = test::diffuse(s, {0.8f, 0.1f, 0.2f}, true);
         const auto leaf_color = add<TextureId>(s.textures, Texture(ConstantTexture{{0.3f, 0.4f, 0.1f}}));
-        const auto leaf =
-            add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{leaf_color, leaf_color}));
+        const auto leaf = add<MaterialId>(s.materials, Material(DiffuseTransmissionMaterial{leaf_color, leaf_color}));
         const auto mix = [&](float weight) {
             return add<MaterialId>(s.materials, Material(MixMaterial{red, leaf, {weight}}));
         };

@@ -194,10 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
                   s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan};
               }},
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
-        Fault{"light samples",
-              [](Scene& s) {
-                  s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0};
-              }},
+        Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
         Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
         Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
         Fault{"camera 0: the field of view",

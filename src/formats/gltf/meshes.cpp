@@ -110,6 +110,8 @@ std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, 
         context_.warn("a primitive without positions is ignored", attributes.offset());
         return std::nullopt;
     }
+    if (attributes.has("COLOR_0"))
+        context_.not_honoured("the colours of vertices have no effect", attributes.offset_of("COLOR_0"));
     if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;
     std::optional<ShapeId> made;
     if (auto mesh = read(primitive, key)) {

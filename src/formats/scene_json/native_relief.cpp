@@ -20,8 +20,8 @@ MixMaterial NativeLoader::read_mix(ObjectReader& material) {
     out.weight = read_input(material, "weight", out.weight);
     const uint32_t parts = parts_of(scene(), out.first) + parts_of(scene(), out.second);
     if (parts > kMaxMixed)
-        source_.fail(two.offset(), "a mix of " + std::to_string(parts) + " materials, expected at most " +
-                                       std::to_string(kMaxMixed));
+        source_.fail(two.offset(),
+                     "a mix of " + std::to_string(parts) + " materials, expected at most " + std::to_string(kMaxMixed));
     return out;
 }
 

@@ -1,10 +1,10 @@
 // Lobes about a normal that a map has turned (relief.h).
 //
 // Such a lobe leans over: part of what it reflects would go into the surface, part of what it transmits would come out.
-// Between the facets of real relief such light meets the surface again; as in microfacet-based normal mapping (Schüssler
-// et al. 2017) it is reflected there, but by a mirror that lies in the surface itself: the lobe is folded at it. All of
-// its energy stays, on the side where it belongs, and values, densities and samples follow from the lobe's own without
-// anything new to integrate.
+// Between the facets of real relief such light meets the surface again; as in microfacet-based normal mapping
+// (Schüssler et al. 2017) it is reflected there, but by a mirror that lies in the surface itself: the lobe is folded at
+// it. All of its energy stays, on the side where it belongs, and values, densities and samples follow from the lobe's
+// own without anything new to integrate.
 #pragma once
 
 #include "shading/bsdf/lobe.h"
