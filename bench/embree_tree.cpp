@@ -83,8 +83,8 @@ public:
 
     BinaryNode* copy(const TreeNode& from, const Box& box, uint32_t depth) {
         BinaryNode* to = source_.next();
-        to->box = {Float4::load(BuildPrimitive(box, 0, ItemKind::block).lo).first_three(),
-                   Float4::load(BuildPrimitive(box, 0, ItemKind::block).hi).first_three()};
+        const BuildPrimitive bounds(box, 0, ItemKind::block);
+        to->set_box({Float4::load(bounds.lo), Float4::load(bounds.hi)});
         to->begin = static_cast<uint32_t>(out_.primitives.size()), to->depth = depth;
         for (size_t i = 0; i < from.count; ++i)
             out_.primitives.emplace_back(box_of(from.primitives[i]), from.primitives[i].primID, ItemKind::block);

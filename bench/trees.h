@@ -14,7 +14,7 @@ namespace steradian::bench {
 struct BinaryTree {
     std::unique_ptr<BinaryPool> nodes;
     BinaryNode* root = nullptr;
-    std::vector<BuildPrimitive> primitives;
+    LargeArray<BuildPrimitive> primitives;
 };
 
 /// Over the triangles of a mesh by Embree's builder for trees of one's own (rtcBuildBVH), of medium or, with spatial

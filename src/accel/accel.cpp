@@ -138,7 +138,7 @@ Status build_levels(std::span<const Geometry> geometries, const std::vector<bool
         monitor.advance(primitives.size() * kReadWork);
         if (monitor.poll()) return cancelled_error();
         const LevelPart part{0, kNoHit, i};
-        built.levels[i] = build_level(primitives, geometries, {&part, 1}, kNoHit,
+        built.levels[i] = build_level(std::move(primitives), geometries, {&part, 1}, kNoHit,
                                       bvh_options(options, kind_of(geometries[i])), monitor);
         if (monitor.poll()) return cancelled_error();
     }
@@ -199,7 +199,7 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
     monitor.advance((primitives.size() - first_instance) * kReadWork);
     BvhOptions upper_options = bvh_options(options, mostly);
     upper_options.split_boxes = true;
-    built.upper = build_level(primitives, geometries, parts, first_instance, upper_options, monitor);
+    built.upper = build_level(std::move(primitives), geometries, parts, first_instance, upper_options, monitor);
     return monitor.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 

@@ -11,24 +11,46 @@
 
 namespace steradian {
 
-struct BinaryNode {
-    Box4 box;
+/// There are more of these than of anything else while a hierarchy is built, so they are packed.
+struct alignas(16) BinaryNode {
+    // The box, as in BuildPrimitive.
+    float lo[3];
+    uint32_t begin = 0;  ///< primitives [begin, end)
+    float hi[3];
+    uint32_t end = 0;
     BinaryNode* child[2] = {};  ///< both or none
-    uint32_t begin = 0, end = 0;
-    uint32_t depth = 0;
+    // gather() sets the costs, and once these have been decided by, the places.
+    struct Places {
+        uint32_t nodes, blocks, entries;  ///< that it takes to hold the subtree
+    };
+    union {
+        /// Least cost of the subtree in at most i + 1 of a wide node's children.
+        float cost[kWidth - 1];
+        Places places;
+    };
+    uint32_t depth : 7 = 0;
     // The rest is set by gather().
-    /// Wide nodes, blocks and entries that it takes to hold the subtree.
-    uint32_t nodes = 0, blocks = 0, entries = 0;
-    /// Least cost of the subtree in at most i + 1 of a wide node's children.
-    float cost[kWidth - 1] = {};
-    /// How many of i + 2 children the left side gets at that cost; 0 when one child fewer is as good. The last one is
-    /// for a node of its own, with kWidth children.
-    uint8_t left_share[kWidth - 1] = {};
-    bool one_leaf = false;  ///< cheaper as one leaf than in any other way
-    bool one_kind = true;
+    uint32_t one_leaf : 1 = 0;  ///< cheaper as one leaf than in any other way
+    uint32_t one_kind : 1 = 1;
+    uint32_t first_kind : 2 = 0;  ///< the ItemKind of the first primitive
+    uint32_t shares : 3 * (kWidth - 1) = 0;
 
     bool is_leaf() const { return child[0] == nullptr || one_leaf; }
+    Box4 box() const { return {Float4::load(lo).first_three(), Float4::load(hi).first_three()}; }
+    void set_box(const Box4& b) {
+        const uint32_t first = begin, last = end;
+        b.lo.store(lo), b.hi.store(hi);
+        begin = first, end = last;
+    }
+    /// How many of `children` (at least 2) of a wide node the left side gets at the least cost; 0 when one child fewer
+    /// is as good. With kWidth children in a node of its own.
+    uint32_t left_share(uint32_t children) const { return shares >> 3 * (children - 2) & 7; }
+    void set_left_share(uint32_t children, uint32_t left) {
+        const uint32_t at = 3 * (children - 2);
+        shares = (shares & ~(7u << at)) | left << at;
+    }
 };
+static_assert(sizeof(BinaryNode) == 80 && kMaxBvhDepth < 128);
 
 /// Nodes in chunks that never move. Every task has a Source of its own, so that workers meet only over whole chunks.
 class BinaryPool {
@@ -73,7 +95,8 @@ struct Subtree {
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
             BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
 
-/// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp.
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out);
+/// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp. The primitives are gone
+/// before most of `out` is there, where their boxes are not needed.
+void gather(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out);
 
 }  // namespace steradian

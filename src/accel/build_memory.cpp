@@ -31,7 +31,8 @@ BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options)
     // In the worst case a leaf holds one primitive, and a node two leaves.
     const uint64_t m = n + added, triangles = counts.triangles + (counts.triangles ? added : 0);
     const uint64_t nodes = m + 1, binary_nodes = 2 * m;
-    const uint64_t primitives = n * sizeof(BuildPrimitive), entries = counts.others * sizeof(LeafEntry);
+    const uint64_t boxes = n * sizeof(BuildPrimitive), more_boxes = m * sizeof(BuildPrimitive);
+    const uint64_t entries = counts.others * sizeof(LeafEntry);
     const uint64_t ids = triangles * kBlock * sizeof(uint32_t) + counts.others * sizeof(uint32_t);
     const uint64_t wide = nodes * sizeof(WideNode), compact_nodes = nodes * sizeof(CompactNode);
     const uint64_t compact_blocks = triangles * kMaxUnitsPerTriangle * sizeof(uint64_t);
@@ -41,22 +42,21 @@ BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options)
     const uint64_t chunks = 1 + binary_nodes / BinaryPool::kChunk + sources;
     const uint64_t pool =
         chunks * (BinaryPool::kChunk * sizeof(BinaryNode) + kGrowing * sizeof(void*)) + n / 2;  // and bins
-    uint64_t dividing = 0, ordered = 0;
+    uint64_t dividing = boxes + pool;
     // Sorted along the curve: the primitives, their treelets, where these begin, in both orders, and the leaves.
     if (options.builder == BvhBuilder::fast)
-        dividing = n * (2 * sizeof(BuildPrimitive) + 2 * kGrowing * sizeof(uint32_t) + kGrowing * sizeof(void*));
-    if (high_quality) {
-        ordered = m * sizeof(BuildPrimitive);
-        dividing = (n + added) * sizeof(BuildPrimitive) + ordered + binary_nodes * kReinsertionBytes;
-    }
+        dividing += n * (2 * sizeof(BuildPrimitive) + 2 * kGrowing * sizeof(uint32_t) + kGrowing * sizeof(void*));
+    // Making room; reinserting; and putting in order.
+    if (high_quality)
+        dividing = more_boxes + std::max({boxes, pool + binary_nodes * kReinsertionBytes, pool + more_boxes});
     BuildMemory out;
     out.result = (compact ? compact_nodes + compact_blocks + kPaddingUnits * sizeof(uint64_t)
                           : wide + triangles * sizeof(TriangleBlock)) +
                  entries;
-    const uint64_t gathering = ordered + pool + wide + ids;
+    const uint64_t gathering = more_boxes + m * sizeof(uint32_t) + pool + wide + ids;
     const uint64_t packing = wide + ids + entries +
                              (compact ? compact_nodes + kGrowing * compact_blocks : triangles * sizeof(TriangleBlock));
-    out.peak = primitives + std::max({pool + dividing, gathering, packing});
+    out.peak = std::max({dividing, gathering, packing});
     return out;
 }
 

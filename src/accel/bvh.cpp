@@ -40,8 +40,8 @@ private:
     void divide(BinaryNode& out, size_t begin, size_t end, size_t room_end, const RangeBounds& bounds, uint32_t depth,
                 BinaryPool::Source& source) {
         const std::span<BuildPrimitive> range = primitives_.subspan(begin, end - begin);
-        out.box = bounds.box;
         out.begin = static_cast<uint32_t>(begin), out.end = static_cast<uint32_t>(end);
+        out.set_box(bounds.box);
         out.depth = depth;
         const Halves halves = split(range, primitives_.subspan(begin, room_end - begin), bounds, depth);
         if (halves.left == 0) {
@@ -121,23 +121,21 @@ private:
     std::atomic<uint64_t> reported_{0};
 };
 
-void build_high_quality(std::span<const BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor,
+void build_high_quality(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options, BuildMonitor& monitor,
                         BinaryPool& pool, Bvh& out) {
     const size_t count = primitives.size(), most = max_items(options.layout);
-    const size_t added = options.split_boxes ? std::min(count / kPrimitivesPerCut, most - count) : 0;
-    std::vector<BuildPrimitive> work(count + added);
-    std::copy(primitives.begin(), primitives.end(), work.begin());
+    primitives.resize(count + (options.split_boxes ? std::min(count / kPrimitivesPerCut, most - count) : 0));
     // Reinsertion takes about two thirds of the time.
     BvhOptions dividing = options;
     dividing.work = options.work / 3;
-    BinaryBuilder builder(work, dividing, monitor, pool);
+    BinaryBuilder builder(primitives, dividing, monitor, pool);
     BinaryPool::Source source(pool);
     BinaryNode& root = *source.next();
-    builder.run(root, 0, count, work.size(), 0, source);
+    builder.run(root, 0, count, primitives.size(), 0, source);
     if (monitor.poll()) return;
     const uint64_t all = count * options.work;
-    reinsert(root, work, options.max_depth, monitor, all - std::min(all, builder.reported()));
-    if (!monitor.poll()) gather(root, work, monitor, out);
+    reinsert(root, primitives, options.max_depth, monitor, all - std::min(all, builder.reported()));
+    if (!monitor.poll()) gather(root, primitives, monitor, out);
 }
 
 }  // namespace
@@ -148,7 +146,7 @@ void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const 
     builder.run(out, subtree.begin, subtree.end, subtree.end, subtree.depth, source);
 }
 
-Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor) {
+Bvh build_bvh(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options, BuildMonitor& monitor) {
     Bvh out;
     if (primitives.empty()) return out;
     BinaryPool pool;

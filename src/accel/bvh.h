@@ -50,8 +50,8 @@ struct BvhOptions {
 /// median split over (centroid, index) takes over, and a leaf at max_depth takes what is left. A leaf holds one kind.
 /// Uses all workers of the caller's arena; the result does not depend on their number. Check `monitor.poll()`
 /// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. At most max_items() boxes
-/// (compact.h), all of them finite; reorders them. With split boxes a primitive may be in several leaves, and there are
+/// (compact.h), all of them finite; takes them. With split boxes a primitive may be in several leaves, and there are
 /// at most half as many again.
-Bvh build_bvh(std::span<BuildPrimitive> primitives, const BvhOptions& options, BuildMonitor& monitor);
+Bvh build_bvh(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options, BuildMonitor& monitor);
 
 }  // namespace steradian

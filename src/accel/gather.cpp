@@ -23,12 +23,12 @@ struct Children {
 
 /// Adds what represents `node` in at most `share` children.
 void add_children(BinaryNode& node, uint32_t share, Children& out) {
-    while (share > 1 && !node.is_leaf() && node.left_share[share - 2] == 0) --share;
+    while (share > 1 && !node.is_leaf() && node.left_share(share) == 0) --share;
     if (share == 1 || node.is_leaf()) {
         out.node[out.count++] = &node;
         return;
     }
-    const uint32_t left = node.left_share[share - 2];
+    const uint32_t left = node.left_share(share);
     add_children(*node.child[0], left, out);
     add_children(*node.child[1], share - left, out);
 }
@@ -37,7 +37,7 @@ void add_children(BinaryNode& node, uint32_t share, Children& out) {
 Children children_of(const BinaryNode& parent) {
     Children c;
     if (parent.is_leaf()) return c;
-    const uint32_t left = parent.left_share[kWidth - 2];
+    const uint32_t left = parent.left_share(kWidth);
     add_children(*parent.child[0], left, c);
     add_children(*parent.child[1], kWidth - left, c);
     return c;
@@ -45,11 +45,11 @@ Children children_of(const BinaryNode& parent) {
 
 class Gatherer {
 public:
-    Gatherer(std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out)
+    Gatherer(LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out)
         : primitives_(primitives), monitor_(monitor), out_(out) {}
 
     void run(BinaryNode& root) {
-        out_.bounds = root.box.box();
+        out_.bounds = root.box().box();
         const Vec3 size = out_.bounds.hi - out_.bounds.lo;
         const float scale = 1 / max_component(size);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
@@ -58,21 +58,24 @@ public:
         if (monitor_.poll()) return;
         const Totals totals = count(root);
         if (monitor_.poll()) return;
+        const uint64_t work = (kGatherWork - 1) * primitives_.size();
+        take_ids(totals.runs > 0);
         out_.nodes.resize(totals.nodes);
         out_.blocks.resize(size_t(totals.blocks) * kBlock);
         out_.entries.resize(totals.entries);
         out_.leaves = totals.leaves, out_.depth = totals.depth;
         fill(root, {0, 0, 0});
-        monitor_.advance((kGatherWork - 1) * primitives_.size());
+        monitor_.advance(work);
     }
 
 private:
     struct Totals {
         uint32_t nodes = 0, blocks = 0, entries = 0, depth = 0;
+        uint32_t runs = 0;  ///< nodes over the runs of a leaf
         uint64_t leaves = 0;
 
         void add(const Totals& t) {
-            nodes += t.nodes, blocks += t.blocks, entries += t.entries, leaves += t.leaves;
+            nodes += t.nodes, blocks += t.blocks, entries += t.entries, runs += t.runs, leaves += t.leaves;
             depth = std::max(depth, t.depth);
         }
     };
@@ -82,9 +85,9 @@ private:
         uint32_t node, block, entry;
     };
 
-    ItemKind kind_of(const BinaryNode& leaf) const { return primitives_[leaf.begin].kind; }
+    static ItemKind kind_of(const BinaryNode& leaf) { return static_cast<ItemKind>(leaf.first_kind); }
     static uint32_t item_size(ItemKind kind) { return kind == ItemKind::block ? kBlock : 1; }
-    uint32_t items_of(const BinaryNode& leaf) const {
+    static uint32_t items_of(const BinaryNode& leaf) {
         const uint32_t size = item_size(kind_of(leaf));
         return (leaf.end - leaf.begin + size - 1) / size;
     }
@@ -105,8 +108,10 @@ private:
 
     /// Costs are surfaces (in units of the root's largest extent) times visits of nodes and tests of items.
     void decide(BinaryNode& node) {
-        const float area = half_area((node.box.hi - node.box.lo) * scale_);
+        const Box4 box = node.box();
+        const float area = half_area((box.hi - box.lo) * scale_);
         const uint32_t primitives = node.end - node.begin;
+        node.first_kind = static_cast<uint32_t>(primitives_[node.begin].kind) & 3;
         const float as_leaf = area * leaf_cost(kind_of(node), primitives);
         if (node.is_leaf()) {
             std::fill_n(node.cost, kWidth - 1, as_leaf);
@@ -124,7 +129,7 @@ private:
             best[share] = kInfinity;
             for (uint32_t left = 1; left < share; ++left) {
                 const float cost = l.cost[left - 1] + r.cost[share - left - 1];
-                if (cost < best[share]) best[share] = cost, node.left_share[share - 2] = static_cast<uint8_t>(left);
+                if (cost < best[share]) best[share] = cost, node.set_left_share(share, left);
             }
         }
         const float as_node = area + best[kWidth];
@@ -133,7 +138,7 @@ private:
         for (uint32_t share = 2; share < kWidth; ++share) {
             node.cost[share - 1] = best[share];
             if (best[share] < node.cost[share - 2]) continue;
-            node.cost[share - 1] = node.cost[share - 2], node.left_share[share - 2] = 0;
+            node.cost[share - 1] = node.cost[share - 2], node.set_left_share(share, 0);
         }
     }
 
@@ -150,15 +155,24 @@ private:
         each(root, children, [&](uint32_t i) {
             BinaryNode& child = *children.node[i];
             parts[i] = child.is_leaf() ? count_leaf(child) : count(child);
-            child.nodes = parts[i].nodes, child.blocks = parts[i].blocks, child.entries = parts[i].entries;
+            child.places = {parts[i].nodes, parts[i].blocks, parts[i].entries};
         });
         for (uint32_t i = 0; i < children.count; ++i) totals.add(parts[i]);
         return totals;
     }
-    Totals count_leaf(const BinaryNode& leaf) const {
-        const uint32_t items = items_of(leaf);
+    static Totals count_leaf(const BinaryNode& leaf) {
+        const uint32_t items = items_of(leaf), nodes = nodes_for(items);
         const bool blocks = kind_of(leaf) == ItemKind::block;
-        return {nodes_for(items), blocks ? items : 0, blocks ? 0 : items, leaf.depth, 1};
+        return {nodes, blocks ? items : 0, blocks ? 0 : items, leaf.depth, nodes, 1};
+    }
+
+    /// Of the primitives only their ids are needed from now on, and boxes where there are nodes over runs.
+    void take_ids(bool boxes_too) {
+        ids_.resize(primitives_.size());
+        parallel_for(ids_.size(), kTaskGrain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) ids_[i] = primitives_[i].id;
+        });
+        if (!boxes_too) LargeArray<BuildPrimitive>().swap(primitives_);
     }
 
     /// body(i) for every child, by several workers where that pays.
@@ -185,13 +199,13 @@ private:
                 const BinaryNode& child = *children.node[i];
                 if (child.is_leaf() != leaves) continue;
                 places[i] = at;
-                at.node += child.nodes, at.block += child.blocks, at.entry += child.entries;
+                at.node += child.places.nodes, at.block += child.places.blocks, at.entry += child.places.entries;
             }
         if (root.end - root.begin >= kTaskGrain && monitor_.poll()) return;
         WideNode node = empty_node();
         each(root, children, [&](uint32_t i) {
             const BinaryNode& child = *children.node[i];
-            set_child_box(node, i, child.box.box());
+            set_child_box(node, i, child.box().box());
             if (child.is_leaf()) {
                 node.child[i] = fill_leaf(child, places[i]);
             } else {
@@ -209,7 +223,7 @@ private:
         const uint32_t first = kind == ItemKind::block ? at.block : at.entry;
         uint32_t* const begin = (kind == ItemKind::block ? out_.blocks : out_.entries).data() + size_t(first) * size;
         uint32_t* to = begin;
-        for (uint32_t i = leaf.begin; i < leaf.end; ++i) *to++ = primitives_[i].id;
+        for (uint32_t i = leaf.begin; i < leaf.end; ++i) *to++ = ids_[i];
         std::fill(to, begin + size_t(items) * size, kNoHit);
         return gather_items(leaf.begin, leaf.end, kind, first, items, at.node);
     }
@@ -222,7 +236,7 @@ private:
         uint32_t children = 0;
         for (uint32_t first = 0; first < items; first += share, ++children) {
             const uint32_t b = begin + first * size, e = std::min(end, b + share * size);
-            set_child_box(node, children, range_bounds(primitives_.subspan(b, e - b)).box.box());
+            set_child_box(node, children, range_bounds(std::span(primitives_).subspan(b, e - b)).box.box());
             node.child[children] = gather_items(b, e, kind, item + first, std::min(share, items - first), place);
         }
         set_child_order(node, children);
@@ -240,7 +254,8 @@ private:
         return node;
     }
 
-    std::span<const BuildPrimitive> primitives_;
+    LargeArray<BuildPrimitive>& primitives_;
+    LargeArray<uint32_t> ids_;
     BuildMonitor& monitor_;
     Float4 scale_;
     Bvh& out_;
@@ -248,7 +263,7 @@ private:
 
 }  // namespace
 
-void gather(BinaryNode& root, std::span<const BuildPrimitive> primitives, BuildMonitor& monitor, Bvh& out) {
+void gather(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out) {
     Gatherer(primitives, monitor, out).run(root);
 }
 

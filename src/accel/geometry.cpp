@@ -206,12 +206,12 @@ Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index) {
     return target.bounds;
 }
 
-Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
+Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   BuildMonitor& monitor) {
+    const uint64_t work = primitives.size() * kPackWork;
     Bvh bvh = build_bvh(primitives, options, monitor);
     if (monitor.poll()) return {};
-    const uint64_t work = primitives.size() * kPackWork;
     CompactLevel compact;
     if (options.layout == BvhLayout::compact) {
         const auto triangle = [&](uint32_t id) { return triangle_of(geometries, parts, id); };

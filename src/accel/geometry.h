@@ -45,8 +45,8 @@ void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> g
                     std::span<const LevelPart> parts);
 
 /// `parts` are ascending and say whose the ids of blocks and shapes are; those of instances count from
-/// `first_instance`. Unfinished when cancelled. Reorders the primitives.
-Level build_level(std::span<BuildPrimitive> primitives, std::span<const Geometry> geometries,
+/// `first_instance`. Unfinished when cancelled. Takes the primitives.
+Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
                   BuildMonitor& monitor);
 

@@ -51,7 +51,7 @@ static_assert(kReinsertionBytes ==
 class Tree {
 public:
     Tree(BinaryNode& root, uint32_t max_depth) : max_depth_(max_depth) {
-        const Box bounds = root.box.box();
+        const Box bounds = root.box().box();
         const float scale = 1 / max_component(bounds.hi - bounds.lo);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
         const size_t nodes = count(root);
@@ -101,13 +101,8 @@ public:
         attach(node, back);
     }
 
-    /// Back into the nodes that it is from; returns the primitives in the order of the leaves.
-    std::vector<BuildPrimitive> store(std::span<const BuildPrimitive> primitives) const {
-        std::vector<BuildPrimitive> ordered;
-        ordered.reserve(primitives.size());
-        store(kRoot, 0, primitives, ordered);
-        return ordered;
-    }
+    /// Back into the nodes that it is from, whose leaves keep their primitives: see put_in_order.
+    void store() const { store(kRoot, 0); }
 
 private:
     float area(const Box4& box) const { return half_area((box.hi - box.lo) * scale_); }
@@ -131,26 +126,17 @@ private:
             height_[index] = static_cast<uint8_t>(1 + std::max(height_[left], height_[right]));
         }
         nodes_[index].left = left, nodes_[index].right = right;
-        nodes_[index].set_box(from.box);
+        nodes_[index].set_box(from.box());
         return index;
     }
 
-    BinaryNode* store(uint32_t from, uint32_t depth, std::span<const BuildPrimitive> primitives,
-                      std::vector<BuildPrimitive>& ordered) const {
+    BinaryNode* store(uint32_t from, uint32_t depth) const {
         BinaryNode& to = *origin_[from];
         const FlatNode& node = nodes_[from];
-        to.box = node.box();
-        to.begin = static_cast<uint32_t>(ordered.size());
+        to.set_box(node.box());
         // Splits by kind do not count.
         to.depth = std::min(depth, max_depth_);
-        if (node.is_leaf()) {
-            const auto first = primitives.begin() + ptrdiff_t(node.left & ~kLeafBit);
-            ordered.insert(ordered.end(), first, primitives.begin() + ptrdiff_t(node.right));
-        } else {
-            to.child[0] = store(node.left, depth + 1, primitives, ordered);
-            to.child[1] = store(node.right, depth + 1, primitives, ordered);
-        }
-        to.end = static_cast<uint32_t>(ordered.size());
+        if (!node.is_leaf()) to.child[0] = store(node.left, depth + 1), to.child[1] = store(node.right, depth + 1);
         return &to;
     }
 
@@ -246,10 +232,23 @@ std::vector<Move> find_moves(const Tree& tree, BuildMonitor& monitor) {
     return moves;
 }
 
-}  // namespace
+/// Appends the primitives of all leaves below to `ordered`, and says where they are now.
+void put_in_order(BinaryNode& node, std::span<const BuildPrimitive> primitives, LargeArray<BuildPrimitive>& ordered) {
+    const auto begin = static_cast<uint32_t>(ordered.size());
+    if (node.is_leaf()) {
+        const std::span<const BuildPrimitive> own = primitives.subspan(node.begin, node.end - node.begin);
+        ordered.insert(ordered.end(), own.begin(), own.end());
+    } else {
+        for (BinaryNode* child : node.child) put_in_order(*child, primitives, ordered);
+    }
+    node.begin = begin, node.end = static_cast<uint32_t>(ordered.size());
+}
+uint32_t primitives_below(const BinaryNode& node) {
+    return node.is_leaf() ? node.end - node.begin : primitives_below(*node.child[0]) + primitives_below(*node.child[1]);
+}
 
-void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
-              uint64_t work) {
+/// Everything that is held only for this is gone again at its end.
+void optimise(BinaryNode& root, uint32_t max_depth, BuildMonitor& monitor, uint64_t work) {
     Tree tree(root, max_depth);
     uint64_t work_left = work;
     for (int pass = 0; pass < kPasses && tree.has_room(); ++pass) {
@@ -262,7 +261,18 @@ void reinsert(BinaryNode& root, std::vector<BuildPrimitive>& primitives, uint32_
         }
     }
     monitor.advance(work_left);
-    primitives = tree.store(primitives);
+    tree.store();
+}
+
+}  // namespace
+
+void reinsert(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
+              uint64_t work) {
+    optimise(root, max_depth, monitor, work);
+    LargeArray<BuildPrimitive> ordered;
+    ordered.reserve(primitives_below(root));
+    put_in_order(root, primitives, ordered);
+    primitives = std::move(ordered);
 }
 
 }  // namespace steradian

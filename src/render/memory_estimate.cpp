@@ -18,11 +18,28 @@ namespace {
 
 /// Of the hierarchy, measured on meshes of one to three million triangles (a fifth of the bytes are the nodes, the
 /// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
-constexpr uint64_t kTriangleBytes = 55, kTriangleBytesMedian = 66, kTriangleBytesHighQuality = 57;
-constexpr uint64_t kTriangleBytesCompact = 30, kTriangleBuildBytesCompact = 72;
-constexpr uint64_t kTriangleBuildBytes = 75, kTriangleBuildBytesHighQuality = 185;
+struct TriangleBytes {
+    uint64_t held, build;
+};
+constexpr TriangleBytes kSah{55, 20}, kMedian{66, 30}, kFast{56, 55}, kHighQuality{57, 80};
+constexpr TriangleBytes kCompact{30, 50}, kCompactFast{30, 80}, kCompactHighQuality{30, 110};
 constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
 constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
+
+TriangleBytes triangle_bytes(const Execution& execution) {
+    const bool compact = execution.bvh_layout == BvhLayout::compact;
+    switch (execution.bvh) {
+        case BvhBuilder::high_quality:
+            return compact ? kCompactHighQuality : kHighQuality;
+        case BvhBuilder::median:
+            return compact ? kCompact : kMedian;
+        case BvhBuilder::fast:
+            return compact ? kCompactFast : kFast;
+        case BvhBuilder::sah:
+            break;
+    }
+    return compact ? kCompact : kSah;
+}
 
 template <class T>
 uint64_t bytes_of(const std::vector<T>& v) {
@@ -89,22 +106,14 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
     const uint64_t instances = scene.instances.size();
     MemoryEstimate out;
     out.scene = scene_bytes(scene);
-    const bool high_quality = execution.bvh == BvhBuilder::high_quality;
-    const bool compact = execution.bvh_layout == BvhLayout::compact;
-    const uint64_t triangle = compact                               ? kTriangleBytesCompact
-                              : high_quality                        ? kTriangleBytesHighQuality
-                              : execution.bvh == BvhBuilder::median ? kTriangleBytesMedian
-                                                                    : kTriangleBytes;
-    const uint64_t triangle_build = high_quality ? kTriangleBuildBytesHighQuality
-                                    : compact    ? kTriangleBuildBytesCompact
-                                                 : kTriangleBuildBytes;
+    const TriangleBytes triangle = triangle_bytes(execution);
     out.hierarchy =
-        triangles * triangle + shapes * kShapeBytes + instances * kInstanceBytes +
+        triangles * triangle.held + shapes * kShapeBytes + instances * kInstanceBytes +
         instances * sizeof(ShadingScene::InstanceData) +
         scene.lights.size() * (sizeof(ShadingScene::LightData) + LightTree::kBytesPerLight + sizeof(double));
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
     out.hierarchy += mip_map_bytes(scene);
-    out.build = triangles * triangle_build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
+    out.build = triangles * triangle.build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
     out.picture = picture_bytes(settings, execution);
     return out;
 }
