@@ -93,6 +93,8 @@ protected:
         Vertex out{point, make_bsdf(shading_, point), wo};
         out.from.ns = out.bsdf.frame.z;
         out.from = facing(out.from, wo);
+        // What is seen from behind its shading normal scatters about the geometric one, if at all.
+        if (!(dot(out.from.ns, wo) > 0)) out.from.ns = out.from.ng;
         out.from.both_sides = !only_reflects(out.bsdf);
         return out;
     }

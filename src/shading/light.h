@@ -24,8 +24,9 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
 /// it has several. Nothing when no light can arrive from it. The density may depend on the point: a constant
 /// environment is sampled by the cosine about the shading normal, a rectangle by its solid angle, a sphere by its cone.
 ///
-/// `from` must be turned to the side that is to be lit, see facing(): a constant environment is sampled on the side of
-/// from.ns only, and a surface with two sides that is seen from behind would get nothing from it.
+/// `from` must be turned to the side that is to be lit, see facing(): unless from.both_sides says otherwise, a constant
+/// environment is sampled on the side of from.ns only, and a surface that is seen from behind would get nothing from
+/// it.
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
                                         uint32_t choice, Vec2 u) noexcept;
 

@@ -21,7 +21,7 @@ struct SurfacePoint {
     float footprint = 0;  ///< metres of the surface that a ray stands for (ray_cone.h); 0: a point
     uint32_t instance = kNoHit;
     uint32_t prim = kNoHit;
-    bool both_sides = false;  ///< light from behind ns counts as well: where lights are chosen by what they may bring
+    bool both_sides = false;  ///< light from behind ns counts as well, for choosing lights and directions towards them
 };
 
 /// `hit` must be of `ray`. uv of meshes without any are (hit.u, hit.v); of disks as of the rectangle around them.

@@ -60,6 +60,42 @@ TEST(Paths, AtDepthOneEqualDirectLightWhereAllLightsAreHidden) {
     expect_same_means(scene, path, bsdf);
 }
 
+/// Side by side below and before an even sky: what lets light through, each with a black wall behind its lower half,
+/// and a metal that is seen from behind its shading normals.
+SceneText transmitting() {
+    SceneText s;
+    s.camera(Object("orthographic").set("position", V3{0, 0, 9}).set("look_at", V3{0, 0, 0}).set("height", 2));
+    s.size(10, 2).integrator("path").light(environment({1, 0.7, 0.4}));
+    s.material("black", diffuse(0.0));
+    s.material("leaf", Object("diffuse_transmission").set("reflectance", 0.2).set("transmittance", 0.6));
+    s.material("frosted", Object("glass").set("roughness", 0.7));
+    s.material(
+        "layered",
+        Object("open_pbr").set("transmission_weight", 0.8).set("specular_roughness", 0.6).set("specular_ior", 1.3));
+    s.material("grey", diffuse(0.5, true)).material("mixed", Object("mix").raw("materials", R"(["leaf", "grey"])"));
+    s.material("metal", Object("conductor").set("metal", "gold").set("roughness", 1));
+    const char* const sheets[] = {"leaf", "frosted", "layered", "mixed"};
+    for (int i = 0; i < 4; ++i) {
+        s.object(rectangle({2.0 * i - 4, 0, 0}, {0.9, 0, 0}, {0, 0.9, 0.3}, sheets[i]));
+        s.object(rectangle({2.0 * i - 4, -0.5, -1}, {1, 0, 0}, {0, 0.5, 0}, "black"));
+    }
+    // Its own normal is (0, 0.94, 0.34).
+    s.object(
+        mesh({{3.1, -0.9, 2.5}, {4.9, -0.9, 2.5}, {4.9, 0.9, -2.5}, {3.1, 0.9, -2.5}}, {{0, 1, 2}, {0, 2, 3}}, "metal")
+            .raw("normals", "[[0, 0.8, -0.6], [0, 0.8, -0.6], [0, 0.8, -0.6], [0, 0.8, -0.6]]"));
+    return s.depth(1);
+}
+
+/// The sky behind a surface lights it where it transmits, and the one above the surface wherever its shading normal is.
+TEST(Paths, EveryStrategyFindsAnEvenSkyOnBothSides) {
+    const PreparedCase scene(transmitting().str(), {});
+    RenderSettings both = independent(scene), direct = both, light = both, bsdf = both;
+    direct.integrator = IntegratorKind::direct;
+    light.light_sampling = LightSampling::light;
+    bsdf.light_sampling = LightSampling::bsdf;
+    for (const RenderSettings& other : {direct, light, bsdf}) expect_same_means(scene, both, other);
+}
+
 TEST(Paths, LightSamplesAloneAgreeWithBoth) {
     const PreparedCase scene(room().depth(3).str(), {});
     RenderSettings both = independent(scene), light = both;

@@ -123,10 +123,39 @@ TEST(PdfLight, OfEnvironmentsIntegratesToOne) {
     image.lights = {EnvironmentLight{{1, 1, 1}, ImageId{0}, ColorSpace::linear, 30, 1}};
     for (Scene* scene : {&constant, &image}) {
         const World world(std::move(*scene));
-        const SurfacePoint from = test::receiver({0, 0, 0}, {0.2f, 1, -0.3f});
-        EXPECT_NEAR(integral(world, from, {0, 1, 0}, 2, 0), 1, 2e-3);
-        EXPECT_NEAR(share_of_samples(world, from, 0), 1, 1e-3);
+        for (const bool both_sides : {false, true}) {
+            SurfacePoint from = test::receiver({0, 0, 0}, {0.2f, 1, -0.3f});
+            from.both_sides = both_sides;
+            EXPECT_NEAR(integral(world, from, {0, 1, 0}, 2, 0), 1, 2e-3);
+            EXPECT_NEAR(share_of_samples(world, from, 0), 1, 1e-3);
+        }
     }
+}
+
+/// Half of what an even sky is asked for is behind a surface that transmits, by the cosine.
+TEST(PdfLight, OfAnEvenSkyOnBothSides) {
+    Scene scene;
+    scene.lights = {EnvironmentLight{{1, 2, 3}}};
+    const World world(std::move(scene));
+    SurfacePoint from = test::receiver({0, 0, 0}, {0.2f, 1, -0.3f});
+    from.both_sides = true;
+    constexpr int kCount = 1 << 14;
+    const Sampler sampler(SamplerKind::sobol, 5);
+    int behind = 0;
+    double cosines = 0;
+    for (uint64_t i = 0; i < kCount; ++i) {
+        const SampleKey key = sampler.key(0, 0, i);
+        const Vec2 u = sampler.get_2d(key, 0);
+        const auto sample = sample_light(world.shading, 0, from, sampler.bits(key, 2), u);
+        ASSERT_TRUE(sample);
+        const float cosine = dot(sample->wi, from.ns);
+        behind += cosine < 0;
+        cosines += std::fabs(cosine);
+        ASSERT_EQ(sample->pdf, pdf_light(world.shading, 0, from, sample->wi, nullptr));
+        ASSERT_NEAR(sample->pdf, std::fabs(cosine) / (2 * std::numbers::pi), 1e-6);
+    }
+    EXPECT_NEAR(double(behind) / kCount, 0.5, 1e-3);
+    EXPECT_NEAR(cosines / kCount, 2.0 / 3, 1e-3);
 }
 
 }  // namespace

@@ -99,6 +99,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
 
 /// Where nothing is there: what is behind is seen.
 inline bool lobe_is_specular(const OpenPbrBsdf& lobe) { return lobe.opacity == 0; }
+inline bool lobe_only_reflects(const OpenPbrBsdf& lobe) { return lobe.transmission == 0 || lobe.metalness == 1; }
 inline bool lobe_has_direction(const OpenPbrBsdf& lobe) {
     return lobe.metal.facets.alpha_x != lobe.metal.facets.alpha_y || lobe.coat.alpha_x != lobe.coat.alpha_y;
 }

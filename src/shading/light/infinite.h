@@ -9,17 +9,23 @@ namespace steradian {
 
 inline uint32_t samples_wanted(const EnvironmentLight& light) { return light.samples; }
 
-/// Constant: by the cosine about the shading normal, so that a diffuse surface under an open sky has no variance at
-/// all.
+/// Of a constant sky: by the cosine about the shading normal, so that a diffuse surface under an open sky has no
+/// variance at all; where light from behind counts as well, half of the directions are there.
+inline float constant_sky_pdf(const SurfacePoint& from, Vec3 wi) {
+    const float cosine = dot(wi, from.ns);
+    return from.both_sides ? 0.5f * kInvPi * std::fabs(cosine) : kInvPi * max_of(cosine, 0.0f);
+}
+
 inline std::optional<LightSample> sample_kind(const EnvironmentLight&, const LightContext& context,
                                               const SurfacePoint& from, uint32_t choice, Vec2 u) {
     const EnvironmentTable& table = *context.scene.environment;
     if (table.empty()) return std::nullopt;
     LightSample out;
     if (table.is_constant()) {
-        const Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
+        Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
+        if (from.both_sides && choice >> 31 != 0) local.z = -local.z;
         out.wi = normalize(Frame::from_z(from.ns).to_world(local));
-        out.pdf = dot(out.wi, from.ns) * kInvPi;
+        out.pdf = constant_sky_pdf(from, out.wi);
     } else {
         const EnvironmentSample at = table.sample(choice, u);
         out.wi = at.direction;
@@ -35,7 +41,7 @@ inline double pdf_kind(const EnvironmentLight&, const LightContext& context, con
                        const SurfacePoint* hit) {
     const EnvironmentTable& table = *context.scene.environment;
     if (hit || table.empty()) return 0;
-    return table.is_constant() ? max_of(dot(wi, from.ns), 0.0f) * kInvPi : table.pdf(wi);
+    return table.is_constant() ? constant_sky_pdf(from, wi) : table.pdf(wi);
 }
 
 }  // namespace steradian
