@@ -18,7 +18,7 @@ struct TracedLight {
     Vec3 direction;      ///< unit, towards the light
     float light_pdf = 0, bsdf_pdf = 0;
     float mis_weight = 1;
-    Rgb contribution;         ///< to the radiance of the sample, unless it is occluded
+    Rgb contribution;         ///< to the radiance of the sample, unless it is occluded; after what cut-outs let pass
     bool shadow_ray = false;  ///< one was traced; otherwise there was nothing to bring
     bool occluded = false;
 };

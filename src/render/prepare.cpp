@@ -1,6 +1,7 @@
 // From a Scene to a RenderScene: clean, check, bake, derive the light tables, build the hierarchies.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -50,6 +51,20 @@ std::vector<Geometry> geometries_of(const Scene& scene, const AnalyticShapes& an
     return out;
 }
 
+/// Of a bit for each primitive.
+size_t primitive_bytes(const Scene& scene, const Instance& instance) {
+    const auto* mesh = std::get_if<MeshId>(&scene.shapes[index(instance.shape)]);
+    return mesh ? (scene.meshes[index(*mesh)].indices.size() / 3 + 7) / 8 : 1;
+}
+
+/// As many bits that are 1 as the largest instance has primitives of those that may let rays pass.
+std::vector<uint8_t> cut_out_bits(const ShadingScene& shading) {
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < shading.instances.size(); ++i)
+        if (shading.is_cut_out(i)) bytes = std::max(bytes, primitive_bytes(shading.scene, shading.scene.instances[i]));
+    return std::vector<uint8_t>(bytes, 0xff);
+}
+
 /// A scene can be prepared before anybody knows for which pictures.
 RenderSettings smallest_picture() {
     RenderSettings settings;
@@ -80,9 +95,14 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
 
     AnalyticShapes analytic(shading->scene.shapes);
     const std::vector<Geometry> geometries = geometries_of(shading->scene, analytic);
+    std::vector<uint8_t> cut_outs = cut_out_bits(*shading);
     std::vector<GeometryInstance> instances;
     instances.reserve(shading->scene.instances.size());
-    for (const Instance& i : shading->scene.instances) instances.push_back({index(i.shape), i.world_from_object});
+    for (const Instance& i : shading->scene.instances) {
+        instances.push_back({index(i.shape), i.world_from_object});
+        if (shading->is_cut_out(static_cast<uint32_t>(instances.size() - 1)))
+            instances.back().cut_outs = std::span(cut_outs).first(primitive_bytes(shading->scene, i));
+    }
 
     AccelOptions options;
     options.builder = execution.bvh;
@@ -95,9 +115,9 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     Result<Accel> accel = Error{};
     with_threads(execution.threads, [&] { accel = Accel::build(geometries, instances, options); });
     if (!accel) return std::move(accel).error();
-    return std::shared_ptr<const RenderScene>(
-        std::make_shared<RenderScene>(std::move(*shading), std::move(analytic.spheres), std::move(analytic.rectangles),
-                                      std::move(analytic.disks), std::move(*accel), std::move(hash)));
+    return std::shared_ptr<const RenderScene>(std::make_shared<RenderScene>(
+        std::move(*shading), std::move(analytic.spheres), std::move(analytic.rectangles), std::move(analytic.disks),
+        std::move(cut_outs), std::move(*accel), std::move(hash)));
 }
 
 }  // namespace

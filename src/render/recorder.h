@@ -31,14 +31,16 @@ public:
     void bounce(const TracedBounce& bounce) noexcept {
         if (!failed_) trace_.vertices.back().bounce = bounce;
     }
-    /// The answer to the next shadow ray, in the order in which they were told of.
-    void shadow(bool occluded) noexcept {
+    /// How much of the light passes the next shadow ray, in the order in which they were told of.
+    void shadow(float passes) noexcept {
         if (failed_) return;
         for (; answered_vertex_ < trace_.vertices.size(); ++answered_vertex_, answered_light_ = 0) {
             auto& lights = trace_.vertices[answered_vertex_].lights;
             while (answered_light_ < lights.size() && !lights[answered_light_].shadow_ray) ++answered_light_;
             if (answered_light_ == lights.size()) continue;
-            lights[answered_light_++].occluded = occluded;
+            TracedLight& light = lights[answered_light_++];
+            light.occluded = passes == 0;
+            if (passes > 0 && passes < 1) light.contribution = light.contribution * passes;
             return;
         }
     }

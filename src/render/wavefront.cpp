@@ -101,7 +101,7 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
         c_.scene.accel.intersect(std::span(rays_).subspan(first, count), hits.subspan(first, count), kind);
     });
     depth_ = depth;
-    if (depth == 0 && shading_.hides_instances) look_through_hidden_lights(hits);
+    if ((depth == 0 && shading_.hides_instances) || shading_.has_cut_outs) look_through(hits);
     next_active_.clear();
     next_rays_.clear();
     bounce(depth);
@@ -111,17 +111,38 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
     rays_.swap(next_rays_);
 }
 
-/// Camera rays go on to what is behind a light that they do not see.
-void WavefrontIntegrator::look_through_hidden_lights(std::span<Hit> hits) noexcept {
-    const auto hidden = [&](const Hit& hit) {
-        const uint32_t light = hit.found() ? shading_.instances[hit.instance].area_light : kNoLight;
-        return light != kNoLight && !std::get<AreaLight>(shading_.scene.lights[light]).visible_to_camera;
-    };
+/// Camera rays go on to what is behind a light that they do not see, all rays to what is behind a surface that happens
+/// not to be there.
+void WavefrontIntegrator::look_through(std::span<Hit> hits) noexcept {
     for (size_t i = 0; i < hits.size() && !stopped(); ++i)
-        while (hidden(hits[i])) {
+        for (uint32_t crossing = 0; passes(paths_[active_[i]], rays_[i], hits[i], crossing); ++crossing) {
             const Hit after = hits[i];
             c_.scene.accel.next_hit({&rays_[i], 1}, {&after, 1}, {&hits[i], 1});
         }
+}
+
+/// `crossing` surfaces lie behind the ray already.
+bool WavefrontIntegrator::passes(const Path& path, const Ray& ray, const Hit& hit, uint32_t crossing) const noexcept {
+    if (!hit.found()) return false;
+    const uint32_t light = shading_.instances[hit.instance].area_light;
+    if (depth_ == 0 && light != kNoLight && !std::get<AreaLight>(shading_.scene.lights[light]).visible_to_camera)
+        return true;
+    if (!shading_.is_cut_out(hit.instance)) return false;
+    const float opacity = opacity_at(shading_, surface_at(shading_, ray, hit));
+    if (opacity >= 1) return false;
+    const uint32_t dimension = kOpacityDimension + 4096 * depth_ + 4 * (crossing % 1024);
+    return opacity <= 0 || c_.sampler.get_1d(path.key, dimension) >= opacity;
+}
+
+/// What cut-outs, with nothing else in the way, let pass.
+float WavefrontIntegrator::transmittance(const Ray& shadow_ray) const noexcept {
+    float passes = 1;
+    for (Hit hit = c_.scene.accel.intersect(shadow_ray); hit.found() && passes > 0 && !stopped();) {
+        passes *= 1 - opacity_at(shading_, surface_at(shading_, shadow_ray, hit));
+        const Hit after = hit;
+        c_.scene.accel.next_hit({&shadow_ray, 1}, {&after, 1}, {&hit, 1});
+    }
+    return passes;
 }
 
 void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept {
@@ -172,10 +193,14 @@ void WavefrontIntegrator::trace_shadow_rays() noexcept {
         for (size_t i = 0; i < count; ++i) occluded[order[i]] = result[i];
     });
     for (size_t i = 0; i < occluded.size(); ++i) {
-        if (c_.recorder) c_.recorder->shadow(occluded[i] != 0);
-        if (occluded[i]) continue;
+        float passes = 1;
+        if (occluded[i] == Accel::cut_out) passes = transmittance(shadow_rays_[i]);
+        const bool blocked = occluded[i] == Accel::blocked || !(passes > 0);
+        if (c_.recorder) c_.recorder->shadow(blocked ? 0 : passes);
+        if (blocked) continue;
+        const Rgb contribution = connections_[i].contribution;
         Rgb& radiance = paths_[connections_[i].path].radiance;
-        radiance = radiance + connections_[i].contribution;
+        radiance = radiance + (passes < 1 ? contribution * passes : contribution);
     }
     counters_->shadow_rays += shadow_rays_.size();
     shadow_rays_.clear();

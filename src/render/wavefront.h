@@ -9,6 +9,7 @@
 #include "render/recorder.h"
 #include "shading/bsdf.h"
 #include "shading/light.h"
+#include "shading/opacity.h"
 #include "shading/ray_cone.h"
 
 namespace steradian {
@@ -20,6 +21,7 @@ enum Dimension : uint32_t {
     kBounceDimension = 4,             // four per bounce: choice of lobe, Russian roulette, direction
     kLightDimension = 0x40000000,     // four per light, where all are sampled: position, choice of part, unused
     kOneLightDimension = 0x80000000,  // four per bounce, where one light is sampled: position, choice of part, of light
+    kOpacityDimension = 0xc0000000,   // 4096 per bounce: whether the surfaces on the way to the next vertex are there
 };
 
 /// Scaled down where its largest channel is above `limit`. What is not finite stays so, and is counted.
@@ -124,7 +126,9 @@ private:
 
     void generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept;
     void advance(uint32_t depth) noexcept;
-    void look_through_hidden_lights(std::span<Hit> hits) noexcept;
+    void look_through(std::span<Hit> hits) noexcept;
+    bool passes(const Path& path, const Ray& ray, const Hit& hit, uint32_t crossing) const noexcept;
+    float transmittance(const Ray& shadow_ray) const noexcept;
     void trace_shadow_rays() noexcept;
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;
@@ -144,7 +148,7 @@ private:
     std::vector<Ray> shadow_rays_;
     std::vector<Connection> connections_;
     std::vector<uint32_t> shadow_order_;  ///< in which they are traced
-    std::vector<uint8_t> occluded_;
+    std::vector<uint8_t> occluded_;       ///< an Accel::Occlusion each
 };
 
 template <class Weight>

@@ -13,9 +13,10 @@
 #include "shading/bsdf/refraction.h"
 #include "shading/bsdf/rough_glass.h"
 #include "shading/bsdf/thin_glass.h"
+#include "shading/mixture.h"
+#include "shading/opacity.h"
 #include "shading/relief.h"
 #include "shading/shading_scene.h"
-#include "shading/texture.h"
 
 namespace steradian {
 namespace {
@@ -48,36 +49,19 @@ void make_plain(const ShadingScene& scene, const SurfacePoint& point, MaterialId
     std::visit(make, scene.scene.materials[index(id)]);
 }
 
-/// What a mix is made of at a point, mixes within it taken apart; what has no weight is left out.
-struct Mixture {
-    struct Share {
-        MaterialId material;
-        float weight;
-    };
-    std::array<Share, kMaxMixed> shares;
-    uint32_t count = 0;
-
-    void add(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, float weight) {
-        if (!(weight > 0)) return;
-        const auto* mix = std::get_if<MixMaterial>(&scene.scene.materials[index(id)]);
-        if (!mix) {
-            shares[count++] = {id, weight};
-            return;
-        }
-        float second = mix->weight.value;
-        if (mix->weight.texture) second *= clamp_to(eval_texture(scene, *mix->weight.texture, point).r, 0.0f, 1.0f);
-        add(scene, point, mix->first, weight * (1 - second));
-        add(scene, point, mix->second, weight * second);
-    }
-};
-
-void make_mix(const ShadingScene& scene, const SurfacePoint& point, const Mixture& mixture, Bsdf& out) {
+/// Where parts of a mix let rays pass, what is left of the others makes a whole: a ray that has not passed has met
+/// them.
+void make_mix(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, const Mixture& mixture, Bsdf& out) {
     MixBsdf& mix = out.lobe.emplace<MixBsdf>();
+    const float all = scene.materials[index(id)].cut_out ? opacity_at(scene, point) : 1;
     Vec3 sum;
-    for (uint32_t i = 0; i < mixture.count; ++i) {
+    for (const Mixture::Share& share : mixture.parts()) {
+        float weight = share.weight;
+        if (all > 0 && all < 1) weight *= opacity_at(scene, point, share.material) / all;
+        if (!(weight > 0)) continue;
         MixBsdf::Part& part = mix.parts[mix.count++];
-        part.weight = mixture.shares[i].weight;
-        make_plain(scene, point, mixture.shares[i].material, part);
+        part.weight = weight;
+        make_plain(scene, point, share.material, part);
         sum = sum + part.frame.z * part.weight;
     }
     const bool same = std::all_of(mix.parts.begin(), mix.parts.begin() + mix.count,
@@ -95,12 +79,11 @@ Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point) noexcept {
         make_plain(scene, point, id, out);
         return out;
     }
-    Mixture mixture;
-    mixture.add(scene, point, id, 1);
-    if (mixture.count == 1)
-        make_plain(scene, point, mixture.shares[0].material, out);
+    const Mixture mixture(scene, point, id);
+    if (mixture.parts().size() == 1)
+        make_plain(scene, point, mixture.parts()[0].material, out);
     else
-        make_mix(scene, point, mixture, out);
+        make_mix(scene, point, id, mixture, out);
     return out;
 }
 

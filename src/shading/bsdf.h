@@ -66,7 +66,7 @@ struct OpenPbrBsdf {
     Rgb coat_color, darkening{1, 1, 1};
     Rgb fuzz_color;
     float metalness = 0, transmission = 0, subsurface = 0, diffuse_roughness = 0;
-    float coat_weight = 0, fuzz_weight = 0, opacity = 1;
+    float coat_weight = 0, fuzz_weight = 0;
     Microfacets coat;
     const OpenPbrTables* tables = nullptr;
 };

@@ -12,6 +12,7 @@
 #include "shading/light/sphere_emitter.h"
 #include "shading/microfacet_energy.h"
 #include "shading/mip_map.h"
+#include "shading/opacity.h"
 #include "shading/open_pbr_tables.h"
 #include "shading/surface.h"
 #include "shading/surface_error.h"
@@ -300,7 +301,10 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
         for (const Material& material : out.scene.materials) {
             out.materials.emplace_back();
             std::visit(materials, material);
+            out.materials.back().cut_out =
+                may_let_pass(material, [&](MaterialId id) { return out.materials[index(id)].cut_out; });
         }
+        for (uint32_t i = 0; i < out.instances.size(); ++i) out.has_cut_outs = out.has_cut_outs || out.is_cut_out(i);
         for (uint32_t i = 0; i < out.scene.reliefs.size(); ++i)
             out.materials[index(out.scene.reliefs[i].material)].relief = i;
         out.mip_maps = make_mip_maps(out.scene);

@@ -59,6 +59,7 @@ struct ShadingScene {
         Rgb mean_fresnel;  ///< of metals with a complex index
         std::shared_ptr<const OpenPbrTables> open_pbr;
         uint32_t relief = kNoRelief;  ///< index into scene.reliefs
+        bool cut_out = false;         ///< surfaces of it may let rays pass (opacity.h)
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
 
@@ -70,6 +71,8 @@ struct ShadingScene {
     uint32_t environment_light = kNoLight;
     std::vector<uint32_t> suns;    ///< directional lights with an angular diameter, ascending
     bool hides_instances = false;  ///< there is an area light that is not visible to the camera
+    bool has_cut_outs = false;     ///< there is an instance of a material that is one
+    bool is_cut_out(uint32_t instance) const { return materials[index(scene.instances[instance].material)].cut_out; }
     std::shared_ptr<const EnvironmentTable> environment;
 };
 

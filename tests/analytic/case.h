@@ -52,6 +52,7 @@ std::vector<Case> environment_cases();
 std::vector<Case> sun_cases();
 std::vector<Case> specular_cases();
 std::vector<Case> path_cases();
+std::vector<Case> opacity_cases();
 std::vector<Case> surface_cases();
 std::vector<Case> camera_cases();
 std::vector<Case> transform_cases();

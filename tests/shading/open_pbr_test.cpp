@@ -3,6 +3,7 @@
 
 #include "math/warp.h"
 #include "shading/bsdf.h"
+#include "shading/opacity.h"
 #include "shading/open_pbr_tables.h"
 #include "shading/world.h"
 #include "support/support.h"
@@ -12,22 +13,25 @@ namespace {
 
 using test::Random;
 
-/// A scene of one material; a Bsdf refers to its tables.
+/// A scene of one surface; a Bsdf refers to its tables.
 struct OneMaterial {
     ShadingScene scene;
-    explicit OneMaterial(const OpenPbrMaterial& m) {
+    explicit OneMaterial(const OpenPbrMaterial& m) : OneMaterial(std::vector<Material>{m}) {}
+    /// The last one is what is seen.
+    explicit OneMaterial(std::vector<Material> materials) {
         Scene s;
-        s.materials = {m};
+        s.materials = std::move(materials);
         const ShapeId shape = add<ShapeId>(s.shapes, Shape{Rectangle{}});
-        add<InstanceId>(s.instances, Instance{shape, MaterialId{0}, {}});
+        add<InstanceId>(s.instances, Instance{shape, MaterialId(static_cast<uint32_t>(s.materials.size() - 1)), {}});
         Diagnostics diagnostics;
         scene = std::move(make_shading_scene(std::move(s), diagnostics)).value();
     }
-    Bsdf bsdf() const {
-        SurfacePoint point = test::receiver({}, {0, 0, 1});
-        point.instance = 0;
-        return make_bsdf(scene, point);
+    SurfacePoint point() const {
+        SurfacePoint out = test::receiver({}, {0, 0, 1});
+        out.instance = 0;
+        return out;
     }
+    Bsdf bsdf() const { return make_bsdf(scene, point()); }
 };
 
 Vec3 at_cosine(double cosine) { return static_cast<Vec3>(Vec3d{std::sqrt(1 - cosine * cosine), 0, cosine}); }
@@ -58,7 +62,7 @@ TEST(OpenPbr, RandomMaterialsGainNothing) {
         for (float* x : {&m.base_weight, &m.base_metalness.value, &m.base_diffuse_roughness, &m.specular_weight,
                          &m.specular_roughness.value, &m.specular_roughness_anisotropy, &m.subsurface_weight.value,
                          &m.fuzz_weight.value, &m.fuzz_roughness, &m.coat_weight, &m.coat_roughness,
-                         &m.coat_roughness_anisotropy, &m.coat_darkening, &m.geometry_opacity.value})
+                         &m.coat_roughness_anisotropy, &m.coat_darkening})
             some(*x);
         if (i % 3 == 0) some(m.transmission_weight.value);
         for (Rgb* c : {&m.base_color.value, &m.specular_color, &m.subsurface_color.value, &m.fuzz_color.value,
@@ -124,38 +128,39 @@ TEST(OpenPbr, CoatsTintAndDarken) {
     EXPECT_NEAR(dark.r / tinted.r, (1 - k) / (1 - 0.5 * k), 5e-3);
 }
 
-/// What is not there lets pass as much as the opacity leaves.
-TEST(OpenPbr, OpacityLetsPass) {
+/// Of the material, of a cut-out (an opacity at the cutoff is there, one below it is not) and of mixes; what has not
+/// let pass scatters as if nothing ever did.
+TEST(OpenPbr, OpacitySaysHowMuchIsThere) {
     OpenPbrMaterial m;
+    const OneMaterial solid(m);
+    EXPECT_FALSE(solid.scene.has_cut_outs);
+    EXPECT_EQ(opacity_at(solid.scene, solid.point()), 1);
     m.geometry_opacity.value = 0.25f;
-    const OneMaterial material(m);
-    const Bsdf bsdf = material.bsdf();
-    OpenPbrMaterial opaque;
-    const OneMaterial solid(opaque);
+    const OneMaterial quarter(m);
+    EXPECT_TRUE(quarter.scene.has_cut_outs);
+    EXPECT_EQ(opacity_at(quarter.scene, quarter.point()), 0.25f);
     const Vec3 wo = at_cosine(0.7), wi = at_cosine(0.5);
-    EXPECT_NEAR(eval(bsdf, wo, wi).f_cos.g, 0.25 * eval(solid.bsdf(), wo, wi).f_cos.g, 1e-7);
-    Random random(64);
-    int passed = 0;
-    const int n = 10000;
-    for (int i = 0; i < n; ++i) {
-        const float uc = random.uniform();
-        const auto s = sample(bsdf, wo, uc, random.uniform2());
-        if (!s || !s->specular) continue;
-        ++passed;
-        EXPECT_EQ(s->wi, -wo);
-        EXPECT_EQ(s->weight, (Rgb{1, 1, 1}));
-        EXPECT_TRUE(s->transmitted);
-    }
-    EXPECT_NEAR(passed, 0.75 * n, 5 * std::sqrt(n * 0.75 * 0.25));
-    // A cut-out is there or not: an opacity at the cutoff is, one below it is not.
+    EXPECT_EQ(eval(quarter.bsdf(), wo, wi).f_cos, eval(solid.bsdf(), wo, wi).f_cos);
     m.geometry_opacity_cutoff = 0.25f;
-    EXPECT_EQ(eval(OneMaterial(m).bsdf(), wo, wi).f_cos.g, eval(solid.bsdf(), wo, wi).f_cos.g);
+    EXPECT_FALSE(OneMaterial(m).scene.has_cut_outs);
     m.geometry_opacity_cutoff = 0.26f;
-    EXPECT_TRUE(is_specular(OneMaterial(m).bsdf()));
-    m.geometry_opacity_cutoff = 0;
-    m.geometry_opacity.value = 0;
     const OneMaterial nothing(m);
-    EXPECT_TRUE(is_specular(nothing.bsdf()));
+    EXPECT_TRUE(nothing.scene.has_cut_outs);
+    EXPECT_EQ(opacity_at(nothing.scene, nothing.point()), 0);
+}
+
+/// A mix of a quarter that is half there and the rest, which is all there: half a quarter lets pass, and what does not
+/// is 1/7 of the first material.
+TEST(OpenPbr, OpacityOfMixesGoesByTheirShares) {
+    OpenPbrMaterial half, whole;
+    half.geometry_opacity.value = 0.5f;
+    half.base_color.value = {1, 0, 0}, whole.base_color.value = {0, 1, 0};
+    half.specular_weight = whole.specular_weight = 0;
+    const OneMaterial mix({whole, half, MixMaterial{MaterialId{0}, MaterialId{1}, {0.25f}}});
+    EXPECT_NEAR(opacity_at(mix.scene, mix.point()), 0.875, 1e-6);
+    const Rgb f = eval(mix.bsdf(), at_cosine(0.7), at_cosine(0.5)).f_cos;
+    EXPECT_NEAR(f.r / f.g, (1 / 7.0) / (6 / 7.0), 1e-5);
+    EXPECT_NEAR(f.g, 6 / 7.0 * 0.5 / std::numbers::pi, 1e-4);
 }
 
 /// The table against sampling, and its limit.

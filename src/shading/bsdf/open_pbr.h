@@ -6,6 +6,7 @@
 #include "shading/bsdf/conductor.h"
 #include "shading/bsdf/diffuse.h"
 #include "shading/bsdf/rough_glass.h"
+#include "shading/mixture.h"
 #include "shading/open_pbr_tables.h"
 
 namespace steradian {
@@ -53,13 +54,8 @@ inline Rgb coat_darkening(const OpenPbrMaterial& m, const OpenPbrTables& tables,
 
 inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& context) {
     const OpenPbrTables& tables = *context.material.open_pbr;
-    const auto color = [&](const ColorInput& in) {
-        return in.texture ? in.value * eval_texture(context.scene, *in.texture, context.point) : in.value;
-    };
-    const auto number = [&](const FloatInput& in) {
-        if (!in.texture) return in.value;
-        return in.value * clamp_to(eval_texture(context.scene, *in.texture, context.point).r, 0.0f, 1.0f);
-    };
+    const auto color = [&](const ColorInput& in) { return eval_input(context.scene, in, context.point); };
+    const auto number = [&](const FloatInput& in) { return eval_input(context.scene, in, context.point); };
     OpenPbrBsdf out;
     out.tables = &tables;
     const Rgb base = color(m.base_color) * m.base_weight;
@@ -92,13 +88,10 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     }
     out.fuzz_weight = number(m.fuzz_weight);
     out.fuzz_color = color(m.fuzz_color);
-    out.opacity = number(m.geometry_opacity);
-    if (m.geometry_opacity_cutoff > 0) out.opacity = out.opacity >= m.geometry_opacity_cutoff ? 1.0f : 0.0f;
     return out;
 }
 
-/// Where nothing is there: what is behind is seen.
-inline bool lobe_is_specular(const OpenPbrBsdf& lobe) { return lobe.opacity == 0; }
+inline bool lobe_is_specular(const OpenPbrBsdf&) { return false; }
 inline bool lobe_only_reflects(const OpenPbrBsdf& lobe) { return lobe.transmission == 0 || lobe.metalness == 1; }
 inline bool lobe_has_direction(const OpenPbrBsdf& lobe) {
     return lobe.metal.facets.alpha_x != lobe.metal.facets.alpha_y || lobe.coat.alpha_x != lobe.coat.alpha_y;
@@ -111,7 +104,7 @@ struct OpenPbrShares {
 
     OpenPbrShares(const OpenPbrBsdf& lobe, Vec3d wo) {
         const OpenPbrTables& t = *lobe.tables;
-        double left = lobe.opacity;
+        double left = 1;
         fuzz = left * lobe.fuzz_weight;
         if (t.fuzz) {
             const double albedo = t.fuzz->albedo(wo.z);
@@ -206,7 +199,6 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
         out.radiance_scale = glass.radiance_scale;
         add(glass, s.glass, s.p_glass, below);
     }
-    out.pdf *= lobe.opacity;
     return out;
 }
 
@@ -243,8 +235,7 @@ inline BsdfEval eval_lobe(const OpenPbrBsdf& lobe, const LobeGeometry& g, Vec3 w
 
 inline std::optional<BsdfSample> sample_lobe(const OpenPbrBsdf& lobe, const LobeGeometry& g, Vec3 wo, float uc,
                                              Vec2 u) {
-    if (!(uc < lobe.opacity)) return specular_sample(-Vec3d(wo), {1, 1, 1}, true);
-    return sample_by_frame(lobe, g, wo, min_of(uc / lobe.opacity, kOneMinusEpsilon), u);
+    return sample_by_frame(lobe, g, wo, uc, u);
 }
 
 }  // namespace steradian

@@ -5,6 +5,7 @@
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/rectangle_emitter.h"
 #include "shading/light/sphere_emitter.h"
+#include "shading/opacity.h"
 
 namespace steradian {
 
@@ -16,6 +17,13 @@ inline std::optional<EmitterSample> sample_emitter(const std::monostate&, const 
     return std::nullopt;
 }
 inline double emitter_pdf(const std::monostate&, const EmitterContext&, Vec3d, Vec3d, Vec3d) { return 0; }
+
+/// The point of the instance's surface that was sampled, as a ray from `from` would find it.
+inline SurfacePoint point_of(const LightContext& context, InstanceId instance, const SurfacePoint& from,
+                             const EmitterSample& at) {
+    const Ray ray{from.p, 0, static_cast<Vec3>(at.p - Vec3d(from.p)), kInfinity};
+    return surface_at(context.scene, ray, {1, at.u, at.v, at.prim, index(instance)});
+}
 
 inline std::optional<LightSample> sample_kind(const AreaLight& light, const LightContext& context,
                                               const SurfacePoint& from, uint32_t choice, Vec2 u) {
@@ -30,7 +38,10 @@ inline std::optional<LightSample> sample_kind(const AreaLight& light, const Ligh
     if (!towards || !(pdf > 0) || !is_finite(pdf)) return std::nullopt;
     const std::optional<Ray> ray = shadow_ray_to_surface(from, context, light.instance, *at, towards->wi);
     if (!ray) return std::nullopt;
-    return LightSample{towards->wi, light.radiance, pdf, *ray};
+    Rgb radiance = light.radiance;
+    if (context.scene.has_cut_outs && context.scene.is_cut_out(index(light.instance)))
+        radiance = radiance * opacity_at(context.scene, point_of(context, light.instance, from, *at));
+    return LightSample{towards->wi, radiance, pdf, *ray};
 }
 
 inline double pdf_kind(const AreaLight& light, const LightContext& context, const SurfacePoint& from, Vec3 wi,

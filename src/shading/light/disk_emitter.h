@@ -17,6 +17,7 @@ inline std::optional<EmitterSample> sample_emitter(const DiskEmitter& disk, cons
     const warp::DiskPoint at = warp::disk(u);
     EmitterSample out;
     out.p = disk.center + disk.axis_u * at.x + disk.axis_v * at.y;
+    out.u = static_cast<float>(at.x), out.v = static_cast<float>(at.y);
     out.n = disk.normal;
     out.p_error = disk.p_error;
     out.pdf = emitter_pdf(disk, context, from, out.p, out.n);

@@ -68,6 +68,8 @@ struct EmitterSample {
     Vec3d n;  ///< unit, outside by the shape's own orientation
     Vec3 p_error;
     double pdf = 0;
+    float u = 0, v = 0;  ///< with prim as in the Hit of a ray that arrives there
+    uint32_t prim = 0;
 };
 
 /// What a kind may need besides its own values.

@@ -79,6 +79,7 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     out.p_error =
         surface_error(transform, instance, p_object, out.p, flat_slack(size, reach, length(object.scaled_normal())));
     out.pdf = triangle_pdf(world, chosen->probability, out.p - from, out.n);
+    out.u = static_cast<float>(b.b1), out.v = static_cast<float>(b.b2), out.prim = chosen->light;
     return out;
 }
 

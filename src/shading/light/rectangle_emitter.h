@@ -71,11 +71,14 @@ inline std::optional<EmitterSample> sample_emitter(const RectangleEmitter& r, co
         if (seen.solid_angle >= kSmallestSphericalRectangle) {
             const warp::DiskPoint at = seen.position(u);
             out.p = r.center + r.half_u * at.x + r.half_v * at.y;
+            out.u = static_cast<float>(at.x), out.v = static_cast<float>(at.y);
             out.pdf = 1 / seen.solid_angle;
             return out;
         }
     }
-    out.p = r.center + r.half_u * (2 * warp::cell_middle(u.x) - 1) + r.half_v * (2 * warp::cell_middle(u.y) - 1);
+    const double a = 2 * warp::cell_middle(u.x) - 1, b = 2 * warp::cell_middle(u.y) - 1;
+    out.p = r.center + r.half_u * a + r.half_v * b;
+    out.u = static_cast<float>(a), out.v = static_cast<float>(b);
     out.pdf = solid_angle_pdf(1 / r.area, out.p - from, r.normal);
     return out;
 }
