@@ -12,11 +12,14 @@ seconds=${1:-20}
 artifacts=build/fuzz/artifacts
 mkdir -p "$artifacts"
 passed=0 failed=0
-fuzz() { "$target" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$artifacts/$name-" "$@" </dev/null; }
+dictionary=()
+fuzz() { "$target" "${dictionary[@]}" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="$artifacts/$name-" "$@" </dev/null; }
 while IFS= read -r target; do
     name=${target##*/fuzz_}
     corpus=fuzz/corpus/$name
     echo "== $name"
+    dictionary=()
+    [ -f "fuzz/dictionaries/$name" ] && dictionary=(-dict="fuzz/dictionaries/$name")
     # New inputs go into a folder of their own; the committed corpus stays as it is.
     found=build/fuzz/found/$name
     mkdir -p "$found"

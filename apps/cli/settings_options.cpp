@@ -105,6 +105,7 @@ Result<LoadOptions> load_options(const SettingsOptions& o) {
     LoadOptions out;
     if (o.allow_outside_paths) out.allow_outside_paths = true;
     out.gltf_variant = o.variant;
+    if (o.gltf_memory) out.gltf_free_bytes = *o.gltf_memory << 20;
     if (o.light_units == kLightUnits[1]) out.gltf_light_units = GltfLightUnits::photometric;
     EnvironmentOptions& environment = out.environment;
     if (o.environment == "none") {
@@ -217,6 +218,7 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     if (o.allow_outside_paths) out += " --allow-outside-paths";
     word("--variant", o.variant);
     word("--gltf-light-units", o.light_units);
+    number("--gltf-memory", o.gltf_memory);
     word("--integrator", o.integrator);
     number("--max-depth", o.max_depth);
     word("--light-sampling", o.light_sampling);
@@ -261,6 +263,10 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
     add_choice(c, "--gltf-light-units", options.light_units, kLightUnits,
                "How a glTF file's lights are meant: radiometric (W/sr and W/m², the default) or photometric (683\n"
                "times that, of exporters that turn watts into lumens)")
+        ->group("Picture");
+    add_count<uint64_t>(c, "--gltf-memory", options.gltf_memory, 0, 1 << 20,
+                        "MiB that a glTF file's geometry and texels may take even where that is more than 256 times\n"
+                        "the bytes of the file: 320 unless said otherwise, against hostile files")
         ->group("Picture");
     add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(),
                "path: all light; direct: what arrives without detours; ao: ambient occlusion. To look at a scene:\n"

@@ -20,6 +20,7 @@ struct SettingsOptions {
     std::string environment;
     std::optional<double> environment_rotation, environment_scale;
     bool allow_outside_paths = false;
+    std::optional<uint64_t> gltf_memory;  ///< MiB
     std::string variant, light_units;
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);

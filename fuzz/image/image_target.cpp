@@ -39,6 +39,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (const auto raw = decode_texels(bytes, "input", kLimits)) {
         check_size(raw->width, raw->height);
         require(raw->channels >= 1 && raw->channels <= 4);
+        const auto claim = texel_claim(bytes);
+        const ImageFileKind kind = image_kind(bytes);
+        require(claim.has_value() == (kind == ImageFileKind::png || kind == ImageFileKind::jpeg));
+        require(!claim || (claim->width == raw->width && claim->height == raw->height));
+        require(!claim || (claim->channels >= raw->channels && claim->value_bytes == value_size(raw->format)));
         require(raw->data.size() == size_t(raw->width) * raw->height * raw->channels * value_size(raw->format));
     } else {
         require(!raw.error().message.empty() && !raw.error().str().empty());

@@ -1,6 +1,8 @@
 // Image files to texels and pictures.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +24,15 @@ ImageFileKind image_kind(std::string_view bytes) noexcept;
 /// unsupported file (deep EXR, CMYK JPEG), resources beyond a limit. The header's claims are checked against the limits
 /// and against the size of the file before memory is taken: a file may expand to 256 MiB, or to 256 times its own size.
 Result<RawImage> decode_texels(std::string_view bytes, const std::string& name, const ImageLimits& limits);
+/// What decode_texels makes of a PNG or a JPEG if it accepts it, by its header alone (`channels` may be one more, where
+/// transparency is damaged); nothing for other kinds, and where there is no header. Takes no memory.
+struct TexelClaim {
+    uint64_t width = 0, height = 0;  ///< below 2^32
+    uint8_t channels = 0, value_bytes = 1;
+    uint64_t texels() const noexcept { return width * height; }
+};
+std::optional<TexelClaim> texel_claim(std::string_view bytes);
+
 Result<RawImage> read_texels(const std::string& path, const ImageLimits& limits);
 
 /// Decodes a picture with its channel names and metadata, as floats; PNG and JPEG are linearised from sRGB. An EXR

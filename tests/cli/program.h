@@ -25,6 +25,7 @@ struct Outcome {
     int signal = 0;  ///< that ended it, 0: none
     std::string out, err;
     uint64_t peak_bytes = 0;  ///< the most memory that was resident
+    double cpu_seconds = 0;   ///< of all its threads
 };
 
 template <uint64_t kBytes>
@@ -99,6 +100,8 @@ public:
         ::wait4(pid_, &status, 0, &usage);
         pid_ = 0;
         Outcome o;
+        for (const timeval t : {usage.ru_utime, usage.ru_stime})
+            o.cpu_seconds += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
         o.peak_bytes = static_cast<uint64_t>(usage.ru_maxrss) * 1024;
         if (WIFEXITED(status)) o.code = WEXITSTATUS(status);
         if (WIFSIGNALED(status)) o.signal = WTERMSIG(status);

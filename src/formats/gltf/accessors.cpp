@@ -163,7 +163,12 @@ Accessor::Sparse Accessors::open_sparse(const Object& sparse, const Accessor& ac
     return out;
 }
 
-Accessor Accessors::open(uint32_t number) {
+const Accessor& Accessors::open(uint32_t number) {
+    const auto known = open_.find(number);
+    return known != open_.end() ? known->second : open_.emplace(number, check(number)).first->second;
+}
+
+Accessor Accessors::check(uint32_t number) {
     const Object object(context_.source, context_.tables.accessors.elements[number], "an accessor");
     const Shape shape = read_shape(object);
     Accessor out;
@@ -203,7 +208,7 @@ Accessor Accessors::open(uint32_t number) {
 /// `set` makes an element of its components.
 template <class T, class Set>
 std::vector<T> Accessors::read(const Accessor& a, Set set) {
-    context_.geometry.take(a.count * sizeof(T), context_.source, a.offset);
+    context_.budget.take(a.count * sizeof(T), context_.source, a.offset);
     std::vector<T> out(a.count);
     if (a.data)
         for (uint64_t i = 0; i < a.count; ++i) out[i] = set([&](uint32_t c) { return a.number(i, c); });
@@ -226,7 +231,7 @@ std::vector<Vec3> Accessors::read_vec3(const Accessor& accessor) {
 std::vector<uint32_t> Accessors::read_indices(const Accessor& a) {
     if (a.components != 1 || !is_index_type(a.component) || a.normalized)
         context_.source.fail(a.offset, "indices must be scalars of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT");
-    context_.geometry.take(a.count * sizeof(uint32_t), context_.source, a.offset);
+    context_.budget.take(a.count * sizeof(uint32_t), context_.source, a.offset);
     std::vector<uint32_t> out(a.count);
     if (a.data)
         for (uint64_t i = 0; i < a.count; ++i)

@@ -37,7 +37,8 @@ class Accessors {
 public:
     Accessors(Context& context, Buffers& buffers) : context_(context), buffers_(buffers) {}
 
-    Accessor open(uint32_t number);
+    /// Checked when it is first asked for.
+    const Accessor& open(uint32_t number);
 
     // Elements as they are meant, after normalisation and with sparse ones in place. The number of components must be
     // that of the result; memory is taken from the budget.
@@ -47,6 +48,7 @@ public:
     std::vector<uint32_t> read_indices(const Accessor& accessor);
 
 private:
+    Accessor check(uint32_t number);
     Accessor::Sparse open_sparse(const Object& sparse, const Accessor& accessor);
     const std::byte* open_array(const Object& object, uint64_t count, uint64_t element_size);
     template <class T, class Set>
@@ -54,6 +56,7 @@ private:
 
     Context& context_;
     Buffers& buffers_;
+    std::map<uint32_t, Accessor> open_;
 };
 
 }  // namespace steradian::gltf

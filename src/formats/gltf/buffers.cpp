@@ -20,16 +20,21 @@ std::string Buffers::read_data(std::string_view uri, size_t offset) const {
     return std::move(*bytes);
 }
 
-std::string Buffers::read_uri(std::string_view uri, size_t offset) {
-    if (parse_data_uri(uri)) return read_data(uri, offset);
+std::shared_ptr<const std::string> Buffers::read_uri(std::string_view uri, size_t offset) {
+    if (parse_data_uri(uri)) return std::make_shared<const std::string>(read_data(uri, offset));
     const auto name = percent_decoded(uri);
     if (!name)
         context_.source.fail(offset, "this URI has a '%' that is not followed by two hexadecimal digits",
                              "a '%' in a file's name is written as %25");
     const std::string path = context_.source.take(context_.assets.resolve(*name), offset);
-    std::string bytes = context_.source.take(read_file(path, context_.options.max_file_bytes), offset);
-    context_.loaded.files.push_back(path);
-    context_.grant(bytes.size());
+    if (const auto known = files_.find(path); known != files_.end())
+        if (auto bytes = known->second.lock()) return bytes;
+    auto bytes = std::make_shared<const std::string>(
+        context_.source.take(read_file(path, context_.options.max_file_bytes), offset));
+    if (files_.insert_or_assign(path, bytes).second) {
+        context_.loaded.files.push_back(path);
+        context_.budget.grant(bytes->size());
+    }
     return bytes;
 }
 
@@ -41,14 +46,14 @@ Buffers::Bytes Buffers::buffer(uint32_t number) {
     std::string_view bytes;
     if (const auto uri = buffer.find("uri")) {
         const std::string_view text = json::read_string(context_.source, *uri, "'uri'");
-        bytes = owned_.emplace(number, read_uri(text, uri->offset())).first->second;
+        bytes = *owned_.emplace_back(read_uri(text, uri->offset()));
     } else if (number == 0 && binary_chunk_) {
         bytes = *binary_chunk_;
     } else {
         // Extensions may say where its data are; nothing else does.
         context_.warn("a buffer has no data: zeros are used", buffer.offset());
-        context_.geometry.take(length, context_.source, buffer.offset());
-        bytes = owned_.emplace(number, std::string(length, '\0')).first->second;
+        context_.budget.take(length, context_.source, buffer.offset());
+        bytes = *owned_.emplace_back(std::make_shared<const std::string>(length, '\0'));
     }
     if (bytes.size() < length)
         context_.source.fail(
@@ -60,6 +65,11 @@ Buffers::Bytes Buffers::buffer(uint32_t number) {
 }
 
 Buffers::View Buffers::view(uint32_t number) {
+    const auto known = views_.find(number);
+    return known != views_.end() ? known->second : views_.emplace(number, check(number)).first->second;
+}
+
+Buffers::View Buffers::check(uint32_t number) {
     const Object view(context_.source, context_.tables.buffer_views.elements[number], "a buffer view");
     const uint32_t of = view.require_reference("buffer", context_.tables.buffers);
     const uint64_t begin = view.integer_or("byteOffset", 0, 0, kMaxBytes);

@@ -79,7 +79,7 @@ void Budget::take(uint64_t bytes, const Source& source, size_t offset) {
     source.fail(offset,
                 "this makes more than " + std::to_string(limit >> 20) + " MiB of " + std::to_string(read_) +
                     " bytes, expected at most " + std::to_string(kMaxExpansion) + " times as much",
-                {}, ErrorCode::resources);
+                "if the file is to be trusted, --gltf-memory allows more", ErrorCode::resources);
 }
 
 void Context::say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset) {

@@ -21,8 +21,9 @@ struct Tables {
     explicit Tables(const Object& root);
 };
 
-/// What a file may make of itself: kMaxExpansion times the bytes that were read, or a fixed amount if that is more. So
-/// that a small file cannot ask for any amount of memory by naming the same data over and over.
+/// What a file may make of itself, geometry and texels together: kMaxExpansion times the bytes that were read, or
+/// LoadOptions::gltf_free_bytes if that is more. So that a small file cannot ask for any amount of memory by naming
+/// the same data over and over, or with pictures of one colour, which are large in files that are tiny.
 class Budget {
 public:
     static constexpr uint64_t kMaxExpansion = 256;
@@ -47,11 +48,8 @@ public:
     const LoadOptions& options;
     LoadedScene& loaded;
     Assets& assets;
-    std::optional<uint32_t> variant;       ///< the chosen one
-    Budget geometry{uint64_t(256) << 20};  ///< vertices, indices, instances
-    Budget texels{uint64_t(1) << 30};      ///< pictures of one colour are large, and their files tiny
-
-    void grant(uint64_t file_bytes) noexcept { geometry.grant(file_bytes), texels.grant(file_bytes); }
+    std::optional<uint32_t> variant;  ///< the chosen one
+    Budget budget{options.gltf_free_bytes};
 
     /// Something in the file is not as it should be, and the picture can be made nevertheless.
     void warn(std::string message, size_t offset) { say(loaded.diagnostics, warned_, std::move(message), offset); }

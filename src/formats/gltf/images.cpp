@@ -1,12 +1,5 @@
 #include "formats/gltf/images.h"
 
-#include <cstring>
-
-#include "base/parallel.h"
-#include "base/text.h"
-#include "image/decode.h"
-#include "math/vector.h"
-
 namespace steradian::gltf {
 namespace {
 
@@ -18,35 +11,6 @@ Wrap read_wrap(const Object& sampler, std::string_view key) {
         sampler.source().fail(sampler.offset_of(key),
                               quoted(key) + " is " + std::to_string(mode) + ", expected 10497, 33071 or 33648");
     return Wrap::repeat;
-}
-
-/// What a channel of an image means where it has fewer: grey stands for all colours, and without alpha it is opaque.
-std::optional<size_t> channel_of(const RawImage& image, Plane plane) {
-    if (plane == Plane::alpha)
-        return image.channels % 2 == 0 ? std::optional<size_t>(image.channels - 1u) : std::nullopt;
-    if (image.channels < 3) return 0;
-    return plane == Plane::red ? 0 : plane == Plane::green ? 1 : 2;
-}
-
-size_t texel_bytes(TexelFormat format) { return format == TexelFormat::u8 ? 1 : format == TexelFormat::f32 ? 4 : 2; }
-
-/// `count` neighbouring channels of each texel from `first` on.
-RawImage channels(const RawImage& from, size_t first, uint8_t count) {
-    const size_t size = texel_bytes(from.format), texels = size_t(from.width) * from.height;
-    RawImage out{from.width, from.height, count, from.format, std::vector<std::byte>(texels * count * size)};
-    for (size_t i = 0; i < texels; ++i)
-        std::memcpy(out.data.data() + i * count * size, from.data.data() + (i * from.channels + first) * size,
-                    count * size);
-    return out;
-}
-
-RawImage white() { return {1, 1, 1, TexelFormat::u8, {std::byte{255}}}; }
-
-std::string what_it_is(std::string_view bytes) {
-    if (bytes.starts_with("\xabKTX 20")) return "a KTX2 texture (KHR_texture_basisu)";
-    if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "a WebP picture";
-    if (bytes.starts_with("DDS ")) return "a DDS texture";
-    return {};
 }
 
 }  // namespace
@@ -109,73 +73,17 @@ Images::Image Images::open(uint32_t number) {
     }
     if (!uri) context_.source.fail(object.offset(), "an image needs a 'uri' or a 'bufferView'");
     out.bytes = buffers_.read_uri(json::read_string(context_.source, *uri, "'uri'"), uri->offset());
+    out.encoded = *out.bytes;
     return out;
 }
 
 ImageId Images::plane_of(uint32_t number, Plane plane) {
     auto found = images_.find(number);
-    if (found == images_.end()) {
-        found = images_.emplace(number, open(number)).first;
-        if (!found->second.bytes.empty()) found->second.encoded = found->second.bytes;
-    }
+    if (found == images_.end()) found = images_.emplace(number, open(number)).first;
     Image& image = found->second;
     auto& id = image.planes[static_cast<size_t>(plane)];
     if (!id) id = context_.assets.add_image({}, image.name);
     return *id;
-}
-
-Error Images::cannot_decode(const Image& image, const Error& error) {
-    const std::string what = what_it_is(image.encoded);
-    if (!what.empty())
-        return {ErrorCode::bad_input,
-                "the image is " + what + ", which is not supported",
-                {},
-                {},
-                "export it as PNG or JPEG"};
-    const std::string at = error.where.byte ? " (at byte " + std::to_string(*error.where.byte) + ")" : std::string();
-    return {error.code, "the image cannot be decoded: " + error.message + at, {}, {}, error.hint};
-}
-
-void Images::keep(const Image& image, RawImage whole) {
-    const auto id_of = [&](Plane plane) { return image.planes[static_cast<size_t>(plane)]; };
-    std::vector<RawImage>& images = context_.loaded.scene.images;
-    for (const Plane plane : {Plane::red, Plane::green, Plane::blue, Plane::alpha}) {
-        if (!id_of(plane)) continue;
-        const auto channel = channel_of(whole, plane);
-        images[index(*id_of(plane))] = channel ? channels(whole, *channel, 1) : white();
-    }
-    if (const auto id = id_of(Plane::color)) {
-        const bool has_alpha = whole.channels % 2 == 0;
-        images[index(*id)] =
-            has_alpha ? channels(whole, 0, static_cast<uint8_t>(whole.channels - 1)) : std::move(whole);
-    }
-}
-
-void Images::decode() {
-    std::vector<Image*> list;
-    for (auto& [number, image] : images_) list.push_back(&image);
-    // A batch at a time, so that files with many bombs are found out early. What is wrong is told in the order of the
-    // file, whichever was decoded first.
-    const size_t batch = hardware_threads();
-    for (size_t begin = 0; begin < list.size(); begin += batch) {
-        const size_t count = min_of(batch, list.size() - begin);
-        std::vector<std::optional<Result<RawImage>>> decoded(count);
-        parallel_for(count, 1, [&](size_t i, size_t end) {
-            for (; i < end; ++i)
-                decoded[i] = decode_texels(list[begin + i]->encoded, list[begin + i]->name, context_.options.images);
-        });
-        for (size_t i = 0; i < count; ++i) {
-            Image& image = *list[begin + i];
-            Result<RawImage>& whole = *decoded[i];
-            if (!whole) {
-                const Error error = cannot_decode(image, whole.error());
-                context_.source.fail(image.offset, error.message, error.hint, error.code);
-            }
-            context_.texels.take(whole->data.size(), context_.source, image.offset);
-            keep(image, std::move(*whole));
-            image.bytes = {};
-        }
-    }
 }
 
 }  // namespace steradian::gltf

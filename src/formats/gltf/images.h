@@ -34,9 +34,9 @@ public:
 
 private:
     struct Image {
-        std::string bytes;         ///< of a file or a URI
-        std::string_view encoded;  ///< the same, or in a buffer
-        std::string name;          ///< for messages
+        std::shared_ptr<const std::string> bytes;  ///< of a file or a URI
+        std::string_view encoded;                  ///< the same, or in a buffer
+        std::string name;                          ///< for messages
         size_t offset = 0;
         std::array<std::optional<ImageId>, 5> planes{};
     };
@@ -44,6 +44,7 @@ private:
     Image open(uint32_t number);
     uint32_t image_of(const Object& texture, size_t offset);
     static Error cannot_decode(const Image& image, const Error& error);
+    uint64_t claim(const Image& image);
     void keep(const Image& image, RawImage whole);
 
     Context& context_;

@@ -42,7 +42,7 @@ Accessor Meshes::open_attribute(const Object& primitive, std::string_view name, 
 std::vector<uint32_t> Meshes::corners(const Object& primitive, const Key& key, uint64_t vertices) {
     std::vector<uint32_t> out;
     if (key[3] == kNone) {
-        context_.geometry.take(vertices * sizeof(uint32_t), context_.source, primitive.offset());
+        context_.budget.take(vertices * sizeof(uint32_t), context_.source, primitive.offset());
         out.resize(vertices);
         std::iota(out.begin(), out.end(), 0u);
     } else {
@@ -63,7 +63,7 @@ std::vector<uint32_t> Meshes::corners(const Object& primitive, const Key& key, u
         context_.warn("the number of corners does not make whole triangles; what is left over is ignored",
                       primitive.offset());
     if (mode != kTriangles)
-        context_.geometry.take(3 * out.size() * sizeof(uint32_t), context_.source, primitive.offset());
+        context_.budget.take(3 * out.size() * sizeof(uint32_t), context_.source, primitive.offset());
     return as_triangles(std::move(out), mode);
 }
 

@@ -133,7 +133,7 @@ private:
             return;
         }
         const std::vector<Meshes::Part>& parts = meshes_.parts(mesh);
-        context_.geometry.take(parts.size() * (sizeof(Instance) + name.size()), context_.source, node.offset());
+        context_.budget.take(parts.size() * (sizeof(Instance) + name.size()), context_.source, node.offset());
         for (const Meshes::Part& part : parts) {
             const InstanceId instance =
                 context_.assets.add_instance({part.shape, part.look.material, world_from_node}, name);
@@ -203,7 +203,7 @@ std::vector<Affine> read_instances(Context& context, Accessors& accessors, const
         return accessor;
     };
     const auto translations = open("TRANSLATION", 3), rotations = open("ROTATION", 4), scales = open("SCALE", 3);
-    context.geometry.take(count.value_or(0) * sizeof(Affine), context.source, extension.offset());
+    context.budget.take(count.value_or(0) * sizeof(Affine), context.source, extension.offset());
     std::vector<Affine> out;
     for (uint64_t i = 0; i < count.value_or(0); ++i) {
         const auto part = [&](const std::optional<Accessor>& from, uint32_t c) {
