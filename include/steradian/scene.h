@@ -53,6 +53,7 @@ struct ImageTexture {
     Vec2 scale{1, 1};
     Vec2 offset{0, 0};
     float rotation = 0;
+    uint32_t uv_set = 0;  ///< which of a mesh's sets of texture coordinates; where it has no such set, the first
 };
 
 /// Squares of side 1; `even` where floor(u) + floor(v) is even.
@@ -64,10 +65,17 @@ struct CheckerTexture {
     float rotation = 0;
 };
 
-/// The colours of a mesh's vertices, blended over each triangle; white on what has none.
-struct VertexColorTexture {};
+/// The colours of a mesh's vertices, or their alphas, blended over each triangle; white on what has none.
+struct VertexColorTexture {
+    bool alpha = false;
+};
 
-using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture, VertexColorTexture>;
+/// One texture times another, channel by channel. Neither is a product itself.
+struct ProductTexture {
+    TextureId first{}, second{};
+};
+
+using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture, VertexColorTexture, ProductTexture>;
 
 // --- Materials -------------------------------------------------------------------------------------------------
 
@@ -197,10 +205,11 @@ using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial
 // --- Relief ----------------------------------------------------------------------------------------------------
 
 /// Normals in tangent space: with (r, g, b) of the texture, 2 r - 1 is along u, 2 g - 1 along -v (up in the image, as
-/// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length.
+/// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length. Where a mesh has tangents, they stand
+/// for u and -v.
 struct NormalMap {
     TextureId texture{};  ///< linear
-    float strength = 1;   ///< multiplies the first two, 0 … 100
+    float strength = 1;   ///< multiplies the first two, -100 … 100
     bool flip_y = false;  ///< 2 g - 1 is along v instead
 };
 
@@ -218,13 +227,28 @@ struct Relief {
 
 // --- Shapes ----------------------------------------------------------------------------------------------------
 
+/// Of a vertex, as normal maps and surfaces with a grain have it: `direction` is where u grows, of any length, zero for
+/// none. -v is side (normal × direction).
+struct Tangent {
+    Vec3 direction;
+    float side = 1;  ///< 1 or -1
+    bool operator==(const Tangent&) const = default;
+};
+
+/// A mesh has at most so many sets of texture coordinates.
+inline constexpr uint32_t kMaxUvSets = 8;
+
 /// Indexed triangles. Counter-clockwise seen from outside: the geometric normal is (p1 - p0) × (p2 - p0).
 struct Mesh {
     std::vector<Vec3> positions;
-    std::vector<Vec3> normals;      ///< empty (flat) or one per position; need not be unit length
-    std::vector<Vec2> uvs;          ///< empty or one per position
-    std::vector<uint32_t> indices;  ///< three per triangle, each < positions.size()
-    std::vector<Rgb> colors = {};   ///< empty or one per position; see VertexColorTexture
+    std::vector<Vec3> normals;           ///< empty (flat) or one per position; need not be unit length
+    std::vector<Vec2> uvs;               ///< empty or one per position
+    std::vector<uint32_t> indices;       ///< three per triangle, each < positions.size()
+    std::vector<Rgb> colors = {};        ///< empty or one per position; see VertexColorTexture
+    std::vector<float> alphas = {};      ///< likewise, in [0, 1]
+    std::vector<Tangent> tangents = {};  ///< empty or one per position; without, triangles have those of their uvs
+    /// Further sets of texture coordinates: number k is more_uvs[k - 1], empty or one per position.
+    std::vector<std::vector<Vec2>> more_uvs = {};
 };
 
 /// Normals point outwards. u runs with the angle about +Y from +X towards -Z, v from the north pole down.

@@ -59,9 +59,11 @@ uint64_t scene_bytes(const Scene& scene) {
                      bytes_of(scene.reliefs) + bytes_of(scene.meshes) + bytes_of(scene.shapes) +
                      bytes_of(scene.instances) + bytes_of(scene.lights) + bytes_of(scene.cameras) +
                      name_bytes(scene.names);
-    for (const Mesh& m : scene.meshes)
-        bytes +=
-            bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices) + bytes_of(m.colors);
+    for (const Mesh& m : scene.meshes) {
+        bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
+        bytes += bytes_of(m.colors) + bytes_of(m.alphas) + bytes_of(m.tangents) + bytes_of(m.more_uvs);
+        for (const std::vector<Vec2>& uvs : m.more_uvs) bytes += bytes_of(uvs);
+    }
     for (const RawImage& image : scene.images) bytes += image.data.size();
     return bytes;
 }

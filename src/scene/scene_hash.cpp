@@ -39,6 +39,7 @@ private:
 
     void put(const Vec2& v) { put(v.x, v.y); }
     void put(const Vec3& v) { put(v.x, v.y, v.z); }
+    void put(const Tangent& t) { put(t.direction, t.side); }
     void put(const Rgb& c) { put(c.r, c.g, c.b); }
     void put(const Affine& a) {
         for (const auto& row : a.m)
@@ -49,10 +50,11 @@ private:
         hash_.value(uint64_t(i.data.size()));
         hash_.bytes(i.data.data(), i.data.size());
     }
-    void put(const VertexColorTexture&) {}
+    void put(const VertexColorTexture& t) { put(t.alpha); }
+    void put(const ProductTexture& t) { put(t.first, t.second); }
     void put(const ConstantTexture& t) { put(t.value); }
     void put(const ImageTexture& t) {
-        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.mip_map, t.scale, t.offset, t.rotation);
+        put(t.image, t.color_space, t.wrap_u, t.wrap_v, t.bilinear, t.mip_map, t.scale, t.offset, t.rotation, t.uv_set);
     }
     void put(const CheckerTexture& t) { put(t.even, t.odd, t.scale, t.offset, t.rotation); }
     void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided, m.roughness); }
@@ -81,6 +83,10 @@ private:
     void put(const MixMaterial& m) { put(m.first, m.second, m.weight); }
     void put(const ConductorMaterial& m) { put(m.reflectance, m.roughness, m.tint); }
     template <class T>
+    void put(const std::vector<T>& values) {
+        raw(values);
+    }
+    template <class T>
     void raw(const std::vector<T>& values) {
         hash_.value(uint64_t(values.size()));
         hash_.bytes(values.data(), values.size() * sizeof(T));
@@ -91,6 +97,9 @@ private:
         raw(m.uvs);
         raw(m.indices);
         raw(m.colors);
+        raw(m.alphas);
+        list(m.tangents);
+        list(m.more_uvs);
     }
     void put(const Sphere& s) { put(s.center, s.radius); }
     void put(const Rectangle& r) { put(r.center, r.half_u, r.half_v); }

@@ -77,10 +77,18 @@ private:
                 "the image's data does not have the size that its header says");
     }
     void check(const VertexColorTexture&) const {}
+    void check(const ProductTexture& t) const {
+        for (const TextureId id : {t.first, t.second}) {
+            refers(id, s_.textures, "texture");
+            require(!std::holds_alternative<ProductTexture>(s_.textures[index(id)]),
+                    "a product of textures is not made of products");
+        }
+    }
     void check(const ConstantTexture& t) const { color(t.value, "a colour must be finite and not negative"); }
     void check(const ImageTexture& t) const {
         refers(t.image, s_.images, "image");
         uv_transform(t);
+        require(t.uv_set < kMaxUvSets, "a set of texture coordinates has a number from 0 to 7");
     }
     void check(const CheckerTexture& t) const {
         color(t.even, "a colour must be finite and not negative");
@@ -171,13 +179,15 @@ private:
 
     void linear(TextureId id) const {
         refers(id, s_.textures, "texture");
+        require(!std::holds_alternative<ProductTexture>(s_.textures[index(id)]),
+                "normals and heights are not products of textures");
         const auto* image = std::get_if<ImageTexture>(&s_.textures[index(id)]);
         require(!image || image->color_space == ColorSpace::linear,
                 "normals and heights are numbers, their texture must be linear");
     }
     void check(const NormalMap& m) const {
         linear(m.texture);
-        require(m.strength >= 0 && m.strength <= 100, "the strength must be between 0 and 100");
+        require(m.strength >= -100 && m.strength <= 100, "the strength must be between -100 and 100");
     }
     void check(const BumpMap& m) const {
         linear(m.texture);
@@ -199,6 +209,14 @@ private:
         require(m.uvs.empty() || m.uvs.size() == m.positions.size(), "there must be one uv per position, or none");
         require(m.colors.empty() || m.colors.size() == m.positions.size(),
                 "there must be one colour per position, or none");
+        const auto per_position = [&](const auto& values) {
+            return values.empty() || values.size() == m.positions.size();
+        };
+        require(per_position(m.alphas), "there must be one alpha per position, or none");
+        require(per_position(m.tangents), "there must be one tangent per position, or none");
+        require(m.more_uvs.size() < kMaxUvSets, "there are too many sets of texture coordinates");
+        for (const auto& uvs : m.more_uvs) require(per_position(uvs), "there must be one uv per position, or none");
+        for (const float a : m.alphas) unit(a, "the alphas of vertices must be between 0 and 1");
         for (const Rgb& c : m.colors) color(c, "the colours of vertices must be finite and not negative");
         const size_t count = m.positions.size();
         require(std::all_of(m.indices.begin(), m.indices.end(), [&](uint32_t i) { return i < count; }),
@@ -402,19 +420,26 @@ Status validate(const RenderSettings& s) {
 }
 
 void sanitize(Scene& scene, Diagnostics& diagnostics) {
-    uint64_t triangles = 0, uvs = 0, normals = 0;
+    uint64_t triangles = 0, uvs = 0, normals = 0, tangents = 0;
     for (Mesh& mesh : scene.meshes) {
         triangles += drop_triangles(mesh);
-        for (Vec2& uv : mesh.uvs)
-            if (!is_finite(uv.x) || !is_finite(uv.y)) uv = {}, ++uvs;
+        const auto clean = [&](std::vector<Vec2>& set) {
+            for (Vec2& uv : set)
+                if (!is_finite(uv.x) || !is_finite(uv.y)) uv = {}, ++uvs;
+        };
+        clean(mesh.uvs);
+        for (std::vector<Vec2>& set : mesh.more_uvs) clean(set);
         // A zero normal stands for "use the flat one" and is understood as such by surface_at.
         for (Vec3& n : mesh.normals)
             if (!is_finite(n)) n = {}, ++normals;
+        for (Tangent& t : mesh.tangents)
+            if (!is_finite(t.direction) || !is_finite(t.side)) t = {}, ++tangents;
     }
     if (triangles)
         diagnostics.warn("triangles with vertices that are not finite or beyond 1e15 were dropped", {}, triangles);
     if (uvs) diagnostics.warn("texture coordinates that are not finite were replaced by 0", {}, uvs);
     if (normals) diagnostics.warn("normals that are not finite were replaced by the flat ones", {}, normals);
+    if (tangents) diagnostics.warn("tangents that are not finite were left out", {}, tangents);
 }
 
 void bake_transforms(Scene& scene) {
@@ -433,7 +458,10 @@ void bake_transforms(Scene& scene) {
         for (Vec3& p : mesh.positions) p = Vec3(transform_point(world_from_object, p));
         for (Vec3& n : mesh.normals) n = Vec3(normalize(transform_normal_by_inverse(*object_from_world, n)));
         // A mirror image turns the winding around; outside stays outside.
-        if (determinant(world_from_object) < 0)
+        const bool mirrors = determinant(world_from_object) < 0;
+        for (Tangent& t : mesh.tangents)
+            t = {Vec3(transform_vector(world_from_object, t.direction)), mirrors ? -t.side : t.side};
+        if (mirrors)
             for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) std::swap(mesh.indices[k + 1], mesh.indices[k + 2]);
         i.world_from_object = {};
     }

@@ -8,8 +8,6 @@ namespace {
 /// The part of v that is perpendicular to n, of unit length; zero where there is none.
 Vec3d along_surface(Vec3d v, Vec3d n) { return normalize(v - n * dot(v, n)); }
 
-/// With the tangents of each triangle by itself. Smooth ones, given for each vertex with a sign, would take the place
-/// of x and of the sign here.
 Vec3d by_map(const NormalMap& map, Rgb texel, const SurfaceDerivatives& d, Vec3d n) {
     const double sign = d.determinant > 0 ? 1 : -1;
     const Vec3d x = along_surface(d.du * sign, n);
@@ -53,15 +51,17 @@ Vec3d visible_normal(Vec3d n, Vec3d ng, Vec3d wo) noexcept {
 
 ReliefNormal relief_normal(const ShadingScene& scene, const SurfacePoint& point, const Relief& relief) noexcept {
     const ReliefNormal flat{point.ns, false};
-    const SurfaceDerivatives d = derivatives_at(scene, point);
+    SurfaceDerivatives d;
     const Vec3d own = point.ns;
     Vec3d n;
     if (const auto* map = std::get_if<NormalMap>(&relief.map)) {
         const Rgb texel = eval_texture(scene, map->texture, point);
+        d = tangents_at(scene, point, uv_set_of(scene.scene, map->texture));
         if (map->strength == 0 || (texel.r == 0.5f && texel.g == 0.5f)) return flat;
         n = by_map(*map, texel, d, own);
     } else {
         const auto& bump = std::get<BumpMap>(relief.map);
+        d = derivatives_at(scene, point, uv_set_of(scene.scene, bump.texture));
         const Vec2 slope = texture_slope(scene, bump.texture, point);
         if (bump.scale == 0 || slope == Vec2{0, 0}) return flat;
         n = by_heights(slope, bump.scale, d, own);

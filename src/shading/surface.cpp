@@ -21,6 +21,12 @@ struct LocalSurface {
 
 Vec3d blend(const Vec3d (&v)[3], double b0, double b1, double b2) { return v[0] * b0 + v[1] * b1 + v[2] * b2; }
 
+/// `hit`: weights of b and c.
+Vec2 blend(Vec2 a, Vec2 b, Vec2 c, Vec2 hit) {
+    const double b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+    return {static_cast<float>(b0 * a.x + b1 * b.x + b2 * c.x), static_cast<float>(b0 * a.y + b1 * b.y + b2 * c.y)};
+}
+
 LocalSurface local_surface(const Mesh& mesh, const LocalRay&, const Hit& hit) {
     const uint32_t* i = mesh.indices.data() + size_t(3) * hit.prim;
     const Vec3d v[3] = {mesh.positions[i[0]], mesh.positions[i[1]], mesh.positions[i[2]]};
@@ -40,9 +46,7 @@ LocalSurface local_surface(const Mesh& mesh, const LocalRay&, const Hit& hit) {
     }
     out.uv = {hit.u, hit.v};
     if (!mesh.uvs.empty()) {
-        const Vec2 a = mesh.uvs[i[0]], b = mesh.uvs[i[1]], c = mesh.uvs[i[2]];
-        out.uv = {static_cast<float>(b0 * a.x + b1 * b.x + b2 * c.x),
-                  static_cast<float>(b0 * a.y + b1 * b.y + b2 * c.y)};
+        out.uv = blend(mesh.uvs[i[0]], mesh.uvs[i[1]], mesh.uvs[i[2]], {hit.u, hit.v});
     }
     return out;
 }
@@ -92,27 +96,39 @@ LocalSurface local_surface(const Disk& disk, const LocalRay&, const Hit& hit) {
     return parallelogram(disk.center, axes.u, axes.v, hit);
 }
 
-SurfaceDerivatives local_derivatives(const Mesh& mesh, const SurfacePoint& point, Vec3d) {
+/// Null where there is no such set.
+const std::vector<Vec2>* further_uvs(const Mesh& mesh, uint32_t uv_set) {
+    if (uv_set == 0 || uv_set > mesh.more_uvs.size() || mesh.more_uvs[uv_set - 1].empty()) return nullptr;
+    return &mesh.more_uvs[uv_set - 1];
+}
+const Mesh* mesh_of(const Scene& scene, const SurfacePoint& point) {
+    const auto* id = std::get_if<MeshId>(&scene.shapes[index(scene.instances[point.instance].shape)]);
+    return id ? &scene.meshes[index(*id)] : nullptr;
+}
+
+SurfaceDerivatives local_derivatives(const Mesh& mesh, const SurfacePoint& point, uint32_t uv_set, Vec3d) {
     const uint32_t* i = mesh.indices.data() + size_t(3) * point.prim;
     const Vec3d p0 = mesh.positions[i[0]], e1 = Vec3d(mesh.positions[i[1]]) - p0, e2 = Vec3d(mesh.positions[i[2]]) - p0;
-    if (mesh.uvs.empty()) return {e1, e2, 1};
-    const Vec2 a = mesh.uvs[i[0]], b = mesh.uvs[i[1]], c = mesh.uvs[i[2]];
+    const std::vector<Vec2>* further = further_uvs(mesh, uv_set);
+    const std::vector<Vec2>& uvs = further ? *further : mesh.uvs;
+    if (uvs.empty()) return {e1, e2, 1};
+    const Vec2 a = uvs[i[0]], b = uvs[i[1]], c = uvs[i[2]];
     const double du1 = static_cast<double>(b.x) - a.x, dv1 = static_cast<double>(b.y) - a.y;
     const double du2 = static_cast<double>(c.x) - a.x, dv2 = static_cast<double>(c.y) - a.y;
     return {e1 * dv2 - e2 * dv1, e2 * du1 - e1 * du2, du1 * dv2 - du2 * dv1};
 }
 /// `n` is the normal of any length. At the poles v has no direction.
-SurfaceDerivatives local_derivatives(const Sphere& sphere, const SurfacePoint&, Vec3d n) {
+SurfaceDerivatives local_derivatives(const Sphere& sphere, const SurfacePoint&, uint32_t, Vec3d n) {
     const double around = std::sqrt(n.x * n.x + n.z * n.z), size = length(n) / (std::numbers::pi * sphere.radius);
     const Vec3d du{n.z, 0, -n.x};
     if (!(around > 0)) return {{}, {}, 0};
     const Vec3d dv = Vec3d{n.y * n.x / around, -around, n.y * n.z / around} * 0.5;
     return {du, dv, size / 2};
 }
-SurfaceDerivatives local_derivatives(const Rectangle& r, const SurfacePoint&, Vec3d) {
+SurfaceDerivatives local_derivatives(const Rectangle& r, const SurfacePoint&, uint32_t, Vec3d) {
     return {r.half_u, -Vec3d(r.half_v), 0.5};
 }
-SurfaceDerivatives local_derivatives(const Disk& disk, const SurfacePoint&, Vec3d) {
+SurfaceDerivatives local_derivatives(const Disk& disk, const SurfacePoint&, uint32_t, Vec3d) {
     const DiskAxes axes = disk_axes(disk);
     return {axes.u, -Vec3d(axes.v), 0.5};
 }
@@ -160,7 +176,7 @@ SurfacePoint surface_at(const ShadingScene& scene, const Ray& ray, const Hit& hi
     return out;
 }
 
-SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point) noexcept {
+SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set) noexcept {
     const Instance& placed = scene.scene.instances[point.instance];
     const Affine& world_from_object = placed.world_from_object;
     // n_world = M⁻ᵀ n_object up to its length, so n_object = Mᵀ n_world.
@@ -168,9 +184,9 @@ SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint&
     SurfaceDerivatives out = std::visit(
         [&](const auto& shape) {
             if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, MeshId>)
-                return local_derivatives(scene.scene.meshes[index(shape)], point, ng);
+                return local_derivatives(scene.scene.meshes[index(shape)], point, uv_set, ng);
             else
-                return local_derivatives(shape, point, ng);
+                return local_derivatives(shape, point, uv_set, ng);
         },
         scene.scene.shapes[index(placed.shape)]);
     out.du = transform_vector(world_from_object, out.du);
@@ -178,8 +194,39 @@ SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint&
     return out;
 }
 
+Vec2 uv_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set) noexcept {
+    const Mesh* mesh = uv_set == 0 ? nullptr : mesh_of(scene.scene, point);
+    const std::vector<Vec2>* uvs = mesh ? further_uvs(*mesh, uv_set) : nullptr;
+    if (!uvs) return point.uv;
+    const uint32_t* i = mesh->indices.data() + size_t(3) * point.prim;
+    return blend((*uvs)[i[0]], (*uvs)[i[1]], (*uvs)[i[2]], point.hit_uv);
+}
+
+SurfaceDerivatives tangents_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set) noexcept {
+    const Mesh* mesh = mesh_of(scene.scene, point);
+    if (!mesh || mesh->tangents.empty()) return derivatives_at(scene, point, uv_set);
+    const uint32_t* i = mesh->indices.data() + size_t(3) * point.prim;
+    const double b1 = point.hit_uv.x, b2 = point.hit_uv.y, weights[3] = {1 - b1 - b2, b1, b2};
+    Vec3d along, n;
+    double side = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        const Tangent& t = mesh->tangents[i[k]];
+        along = along + Vec3d(t.direction) * weights[k];
+        side += t.side * weights[k];
+        if (!mesh->normals.empty()) n = n + normalize(Vec3d(mesh->normals[i[k]])) * weights[k];
+    }
+    if (!(length(n) > 0)) {
+        const Vec3d p0 = mesh->positions[i[0]];
+        n = cross(Vec3d(mesh->positions[i[1]]) - p0, Vec3d(mesh->positions[i[2]]) - p0);
+    }
+    const Vec3d down = cross(along, n) * (side < 0 ? -1.0 : 1.0);
+    if (!(length(down) > 0)) return derivatives_at(scene, point, uv_set);
+    const Affine& world_from_object = scene.scene.instances[point.instance].world_from_object;
+    return {transform_vector(world_from_object, along), transform_vector(world_from_object, down), 1};
+}
+
 Vec3 tangent_at(const ShadingScene& scene, const SurfacePoint& point) noexcept {
-    const SurfaceDerivatives d = derivatives_at(scene, point);
+    const SurfaceDerivatives d = tangents_at(scene, point);
     const double sign = d.determinant > 0 ? 1 : d.determinant < 0 ? -1 : 0;
     return static_cast<Vec3>(normalize(d.du * sign));
 }

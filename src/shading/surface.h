@@ -41,10 +41,17 @@ struct SurfaceDerivatives {
     Vec3d du, dv;
     double determinant = 1;
 };
-SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point) noexcept;
+SurfaceDerivatives derivatives_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set = 0) noexcept;
+
+/// The point's coordinates of a set (ImageTexture::uv_set); those of the first where it has no other.
+Vec2 uv_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set) noexcept;
+
+/// Directions of u and v for normal maps, as derivatives: by the tangents of the mesh where it has some (their lengths
+/// mean nothing then), by the texture coordinates otherwise.
+SurfaceDerivatives tangents_at(const ShadingScene& scene, const SurfacePoint& point, uint32_t uv_set = 0) noexcept;
 
 /// In which direction u of `point` grows on the surface, in world space, of any length: what rough surfaces with a
-/// grain are turned by. Zero where the texture coordinates do not say. Of meshes without any: along the first edge.
+/// grain are turned by. Zero where nothing says. Of meshes without texture coordinates: along the first edge.
 Vec3 tangent_at(const ShadingScene& scene, const SurfacePoint& point) noexcept;
 
 /// The two axes of a disk, perpendicular to its normal and `radius` long: what (u, v) of a hit refers to. Rounded to

@@ -161,6 +161,9 @@ Rgb look_up(const Scene& scene, const ImageTexture& t, TexturePoint point) {
 
 Rgb eval_kind(const Scene&, const ConstantTexture& t, Vec2) { return t.value; }
 Rgb eval_kind(const Scene&, const VertexColorTexture&, Vec2) { return {1, 1, 1}; }
+Rgb eval_kind(const Scene& scene, const ProductTexture& t, Vec2 uv) {
+    return eval_texture(scene, t.first, uv) * eval_texture(scene, t.second, uv);
+}
 template <class T>
 Rgb eval_kind(const Scene& scene, const T& t, Vec2 uv) {
     return look_up(scene, t, texture_point(t, uv));
@@ -195,7 +198,7 @@ Filtered filtered(const ShadingScene& scene, TextureId id, const ImageTexture& t
     if (!t.mip_map || !t.bilinear || !(point.footprint > 0) || scene.mip_maps.empty()) return out;
     out.map = scene.mip_maps[index(id)].get();
     if (!out.map || out.map->levels.empty()) return out;
-    const SurfaceDerivatives d = derivatives_at(scene, point);
+    const SurfaceDerivatives d = derivatives_at(scene, point, t.uv_set);
     const TextureMatrix m = texture_matrix(t);
     const double area = length(cross(d.du, d.dv)), uv_area = d.determinant * d.determinant;
     const double texels = double(out.image.width) * out.image.height * std::fabs(m.xu * m.yv - m.xv * m.yu);
@@ -209,16 +212,24 @@ Rgb eval_at(const ShadingScene& scene, TextureId, const CheckerTexture& t, const
     return eval_kind(scene.scene, t, point.uv);
 }
 Rgb eval_at(const ShadingScene& scene, TextureId id, const ImageTexture& t, const SurfacePoint& point) {
-    return filtered(scene, id, t, point).at(texture_point(t, point.uv));
+    return filtered(scene, id, t, point).at(texture_point(t, uv_at(scene, point, t.uv_set)));
+}
+Rgb eval_at(const ShadingScene& scene, TextureId, const ProductTexture& t, const SurfacePoint& point) {
+    return eval_texture(scene, t.first, point) * eval_texture(scene, t.second, point);
 }
 
-Rgb eval_at(const ShadingScene& scene, TextureId, const VertexColorTexture&, const SurfacePoint& point) {
+Rgb eval_at(const ShadingScene& scene, TextureId, const VertexColorTexture& t, const SurfacePoint& point) {
     const Scene& s = scene.scene;
     const auto* id = std::get_if<MeshId>(&s.shapes[index(s.instances[point.instance].shape)]);
-    if (!id || s.meshes[index(*id)].colors.empty()) return {1, 1, 1};
+    if (!id) return {1, 1, 1};
     const Mesh& mesh = s.meshes[index(*id)];
+    if (t.alpha ? mesh.alphas.empty() : mesh.colors.empty()) return {1, 1, 1};
     const uint32_t* i = mesh.indices.data() + size_t(3) * point.prim;
     const float b1 = point.hit_uv.x, b2 = point.hit_uv.y, b0 = max_of(1 - b1 - b2, 0.0f);
+    if (t.alpha) {
+        const float a = mesh.alphas[i[0]] * b0 + mesh.alphas[i[1]] * b1 + mesh.alphas[i[2]] * b2;
+        return {a, a, a};
+    }
     return mesh.colors[i[0]] * b0 + mesh.colors[i[1]] * b1 + mesh.colors[i[2]] * b2;
 }
 
@@ -235,8 +246,9 @@ Vec2 slope_of(const T& t, Vec2 uv, double step_x, double step_y, const Height& h
 }
 
 Vec2 slope_at(const ShadingScene&, TextureId, const ConstantTexture&, const SurfacePoint&) { return {0, 0}; }
-/// Nobody has asked for heights of vertices: validate() refuses them.
+/// Heights of vertices and products of heights: validate() refuses them.
 Vec2 slope_at(const ShadingScene&, TextureId, const VertexColorTexture&, const SurfacePoint&) { return {0, 0}; }
+Vec2 slope_at(const ShadingScene&, TextureId, const ProductTexture&, const SurfacePoint&) { return {0, 0}; }
 Vec2 slope_at(const ShadingScene& scene, TextureId, const CheckerTexture& t, const SurfacePoint& point) {
     return slope_of(t, point.uv, 1 / 256.0, 1 / 256.0,
                     [&](TexturePoint at) { return double{look_up(scene.scene, t, at).r}; });
@@ -244,7 +256,7 @@ Vec2 slope_at(const ShadingScene& scene, TextureId, const CheckerTexture& t, con
 Vec2 slope_at(const ShadingScene& scene, TextureId id, const ImageTexture& t, const SurfacePoint& point) {
     const Filtered image = filtered(scene, id, t, point);
     const double texel = image.level > 0 ? math::pow(2.0, image.level) : 1;
-    return slope_of(t, point.uv, texel / image.image.width, texel / image.image.height,
+    return slope_of(t, uv_at(scene, point, t.uv_set), texel / image.image.width, texel / image.image.height,
                     [&](TexturePoint at) { return double{image.at(at).r}; });
 }
 
@@ -255,6 +267,11 @@ Rgb texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) noexc
     const float first = linear_value(image, space, i);
     if (image.channels < 3) return {first, first, first};
     return {first, linear_value(image, space, i + 1), linear_value(image, space, i + 2)};
+}
+
+uint32_t uv_set_of(const Scene& scene, TextureId id) noexcept {
+    const auto* image = std::get_if<ImageTexture>(&scene.textures[index(id)]);
+    return image ? image->uv_set : 0;
 }
 
 uint64_t count_bad_texels(const RawImage& image, bool negative_too) noexcept {

@@ -19,6 +19,9 @@ Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
 /// At a point of a surface: also by its footprint, and what belongs to the surface itself.
 Rgb eval_texture(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept;
 
+/// Which set of texture coordinates it is looked up with.
+uint32_t uv_set_of(const Scene& scene, TextureId id) noexcept;
+
 /// How the first channel changes with u and v, by differences over one texel of an image, or of
 /// the level of its MIP map (over 1/256 of the unit of
 /// other textures): continuous for images that are looked up bilinearly.

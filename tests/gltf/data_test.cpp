@@ -145,14 +145,5 @@ TEST(GltfMesh, PointsAndLinesAreReported) {
     EXPECT_TRUE(has(loaded.fidelity, "points and lines"));
 }
 
-TEST(GltfMesh, ColoursOfVerticesAreReported) {
-    GltfBuilder b;
-    const std::string p = std::to_string(b.floats("VEC3", 3, kTriangle));
-    const LoadedScene loaded = good_gltf(b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + p +
-                                                ", \"COLOR_0\": " + p + "}}]}], \"nodes\": [{\"mesh\": 0}]"));
-    EXPECT_EQ(loaded.scene.instances.size(), 1u);
-    EXPECT_TRUE(has(loaded.fidelity, "colours of vertices"));
-}
-
 }  // namespace
 }  // namespace steradian

@@ -16,6 +16,7 @@ Scene full_scene() {
     add<TextureId>(s.textures, Texture(ImageTexture{}));
     add<TextureId>(s.textures, Texture(CheckerTexture{}));
     add<TextureId>(s.textures, Texture(VertexColorTexture{}));
+    add<TextureId>(s.textures, Texture(ProductTexture{}));
     add<MaterialId>(s.materials, Material(DiffuseMaterial{}));
     add<MaterialId>(s.materials, Material(RefractionMaterial{}));
     add<MaterialId>(s.materials, Material(GlassMaterial{}));
@@ -116,6 +117,23 @@ std::vector<Change> changes() {
         [](Scene& s) {
             s.meshes[0].colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         },
+        [](Scene& s) {
+            s.meshes[0].alphas = {1, 0, 1};
+        },
+        [](Scene& s) {
+            s.meshes[0].tangents.assign(3, Tangent{{1, 0, 0}, 1});
+        },
+        [](Scene& s) {
+            s.meshes[0].tangents.assign(3, Tangent{{1, 0, 0}, -1});
+        },
+        [](Scene& s) { s.meshes[0].more_uvs = {s.meshes[0].uvs}; },
+        [](Scene& s) {
+            s.meshes[0].more_uvs = {{}, s.meshes[0].uvs};
+        },
+        [](Scene& s) { std::get<VertexColorTexture>(s.textures[3]).alpha = true; },
+        [](Scene& s) { std::get<ProductTexture>(s.textures[4]).first = TextureId{1}; },
+        [](Scene& s) { std::get<ProductTexture>(s.textures[4]).second = TextureId{1}; },
+        [](Scene& s) { std::get<ImageTexture>(s.textures[1]).uv_set = 1; },
         [](Scene& s) { std::get<ImageTexture>(s.textures[1]).mip_map = true; },
         [](Scene& s) { std::get<ImageTexture>(s.textures[1]).rotation = 1; },
         [](Scene& s) { std::get<CheckerTexture>(s.textures[2]).rotation = 1; },

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.reliefs = {{MaterialId{0}, BumpMap{TextureId{3}}}};
               }},
-        Fault{"the strength must be between 0 and 100",
+        Fault{"the strength must be between -100 and 100",
               [](Scene& s) {
                   s.reliefs = {{MaterialId{0}, NormalMap{TextureId{0}, kNan}}};
               }},
@@ -95,6 +95,33 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"one colour per position",
               [](Scene& s) {
                   s.meshes[0].colors = {{1, 1, 1}};
+              }},
+        Fault{"one alpha per position", [](Scene& s) { s.meshes[0].alphas = {1}; }},
+        Fault{"the alphas of vertices must be between 0 and 1",
+              [](Scene& s) {
+                  s.meshes[0].alphas = {1, 2, 1};
+              }},
+        Fault{"one tangent per position", [](Scene& s) { s.meshes[0].tangents.resize(2); }},
+        Fault{"one uv per position",
+              [](Scene& s) {
+                  s.meshes[0].more_uvs = {{}, {{0, 0}}};
+              }},
+        Fault{"too many sets of texture coordinates", [](Scene& s) { s.meshes[0].more_uvs.resize(kMaxUvSets); }},
+        Fault{"a number from 0 to 7",
+              [](Scene& s) {
+                  s.images = {{1, 1, 1, TexelFormat::u8, std::vector<std::byte>(1)}};
+                  ImageTexture texture;
+                  texture.uv_set = kMaxUvSets;
+                  s.textures.push_back(texture);
+              }},
+        Fault{"a product of textures is not made of products",
+              [](Scene& s) {
+                  s.textures.push_back(ProductTexture{TextureId{0}, TextureId(uint32_t(s.textures.size()))});
+              }},
+        Fault{"not products of textures",
+              [](Scene& s) {
+                  s.textures.push_back(ProductTexture{TextureId{0}, TextureId{0}});
+                  s.reliefs = {{MaterialId{0}, NormalMap{TextureId(uint32_t(s.textures.size() - 1))}}};
               }},
         Fault{"the colours of vertices",
               [](Scene& s) {
@@ -169,30 +196,12 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.images.push_back({2, 2, 3, TexelFormat::u8, std::vector<std::byte>(11)});
               }},
-        Fault{"light 0: the intensity",
-              [](Scene& s) {
-                  s.lights[0] = PointLight{{}, {kNan, 0, 0}};
-              }},
-        Fault{"inner angle",
-              [](Scene& s) {
-                  s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45};
-              }},
-        Fault{"outer angle",
-              [](Scene& s) {
-                  s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181};
-              }},
-        Fault{"direction must be finite and not zero",
-              [](Scene& s) {
-                  s.lights[0] = DirectionalLight{{0, 0, 0}};
-              }},
-        Fault{"angular diameter",
-              [](Scene& s) {
-                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 91};
-              }},
-        Fault{"angular diameter",
-              [](Scene& s) {
-                  s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan};
-              }},
+        Fault{"light 0: the intensity", [](Scene& s) { s.lights[0] = PointLight{{}, {kNan, 0, 0}}; }},
+        Fault{"inner angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 50, 45}; }},
+        Fault{"outer angle", [](Scene& s) { s.lights[0] = SpotLight{{}, {0, -1, 0}, {1, 1, 1}, 0, 181}; }},
+        Fault{"direction must be finite and not zero", [](Scene& s) { s.lights[0] = DirectionalLight{{0, 0, 0}}; }},
+        Fault{"angular diameter", [](Scene& s) { s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 91}; }},
+        Fault{"angular diameter", [](Scene& s) { s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan}; }},
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
         Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
         Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},

@@ -228,6 +228,18 @@ std::vector<Vec3> Accessors::read_vec3(const Accessor& accessor) {
     return read<Vec3>(accessor, [](auto c) { return Vec3{c(0), c(1), c(2)}; });
 }
 
+std::vector<Rgb> Accessors::read_rgb(const Accessor& accessor) {
+    return read<Rgb>(accessor, [](auto c) { return Rgb{c(0), c(1), c(2)}; });
+}
+
+std::vector<float> Accessors::read_component(const Accessor& accessor, uint32_t component) {
+    return read<float>(accessor, [component](auto c) { return c(component); });
+}
+
+std::vector<Tangent> Accessors::read_tangents(const Accessor& accessor) {
+    return read<Tangent>(accessor, [](auto c) { return Tangent{{c(0), c(1), c(2)}, c(3) < 0 ? -1.0f : 1.0f}; });
+}
+
 std::vector<uint32_t> Accessors::read_indices(const Accessor& a) {
     if (a.components != 1 || !is_index_type(a.component) || a.normalized)
         context_.source.fail(a.offset, "indices must be scalars of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT");

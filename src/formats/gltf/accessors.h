@@ -44,6 +44,11 @@ public:
     // that of the result; memory is taken from the budget.
     std::vector<Vec2> read_vec2(const Accessor& accessor);
     std::vector<Vec3> read_vec3(const Accessor& accessor);
+    /// The first three components; there may be a fourth.
+    std::vector<Rgb> read_rgb(const Accessor& accessor);
+    /// Component c of each element.
+    std::vector<float> read_component(const Accessor& accessor, uint32_t c);
+    std::vector<Tangent> read_tangents(const Accessor& accessor);
     /// Whole numbers that are not negative; fails for other types.
     std::vector<uint32_t> read_indices(const Accessor& accessor);
 

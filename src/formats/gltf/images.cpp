@@ -1,5 +1,8 @@
 #include "formats/gltf/images.h"
 
+#include <numbers>
+#include "math/vector.h"
+
 namespace steradian::gltf {
 namespace {
 
@@ -27,8 +30,14 @@ std::optional<TextureUse> Images::use(const Object& object, std::string_view key
         out.uv_set = static_cast<uint32_t>(transform->integer_or("texCoord", out.uv_set, 0, 1000));
         out.uv_scale = transform->vec2_or("scale", {1, 1}, kAny);
         out.uv_offset = transform->vec2_or("offset", {0, 0}, kAny);
-        if (transform->number_or("rotation", 0, kAny) != 0)
-            context_.not_honoured("textures are not rotated (KHR_texture_transform)", transform->offset_of("rotation"));
+        const double radians = transform->number_or("rotation", 0, kAny);
+        out.uv_rotation = static_cast<float>(radians * (180 / std::numbers::pi));
+    }
+    if (out.uv_set >= kMaxUvSets) {
+        context_.not_honoured("sets of texture coordinates beyond number " + std::to_string(kMaxUvSets - 1) +
+                                  " are not there: the first set is used",
+                              out.offset);
+        out.uv_set = 0;
     }
     return out;
 }
@@ -40,13 +49,19 @@ uint32_t Images::image_of(const Object& texture, size_t offset) {
 }
 
 TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) {
-    const TextureKey key{use.texture, plane, space, {use.uv_scale.x, use.uv_scale.y, use.uv_offset.x, use.uv_offset.y}};
+    const TextureKey key{use.texture,
+                         plane,
+                         space,
+                         use.uv_set,
+                         {use.uv_scale.x, use.uv_scale.y, use.uv_offset.x, use.uv_offset.y, use.uv_rotation}};
     if (const auto known = textures_.find(key); known != textures_.end()) return known->second;
     const Object texture(context_.source, context_.tables.textures.elements[use.texture], "a texture");
     ImageTexture out;
     out.color_space = space;
     out.scale = use.uv_scale;
     out.offset = use.uv_offset;
+    out.rotation = use.uv_rotation;
+    out.uv_set = use.uv_set;
     if (const auto number = texture.reference("sampler", context_.tables.samplers)) {
         const Object sampler(context_.source, context_.tables.samplers.elements[*number], "a sampler");
         out.wrap_u = read_wrap(sampler, "wrapS");

@@ -20,6 +20,7 @@ struct TextureUse {
     uint32_t uv_set = 0;
     size_t offset = 0;                     ///< for messages
     Vec2 uv_scale{1, 1}, uv_offset{0, 0};  ///< KHR_texture_transform
+    float uv_rotation = 0;                 ///< likewise, in degrees
 };
 
 class Images {
@@ -50,7 +51,7 @@ private:
     Context& context_;
     Buffers& buffers_;
     std::map<uint32_t, Image> images_;
-    using TextureKey = std::tuple<uint32_t, Plane, ColorSpace, std::array<float, 4>>;
+    using TextureKey = std::tuple<uint32_t, Plane, ColorSpace, uint32_t, std::array<float, 5>>;
     std::map<TextureKey, TextureId> textures_;
 };
 

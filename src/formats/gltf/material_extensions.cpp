@@ -136,7 +136,9 @@ void Materials::read_extensions(const Object& material, Reading& r) {
     if (material.extension("KHR_materials_unlit")) {
         r.unlit = true;
         r.emission = r.surface.base_color.value;
-        if (r.base_color) context_.not_honoured("the texture of an unlit material has no effect", r.base_color->offset);
+        if (r.surface.base_color.texture)
+            context_.not_honoured("the colours of an unlit material's texture and vertices have no effect",
+                                  material.offset());
         return;
     }
     read_specular(material, r);

@@ -1,5 +1,7 @@
 #include "formats/gltf/materials.h"
 
+#include <cmath>
+
 #include "math/vector.h"
 
 namespace steradian::gltf {
@@ -28,21 +30,24 @@ void Materials::no_texture(const Object& object, std::string_view key) {
 std::optional<TextureId> Materials::texture(const Object& object, std::string_view key, Plane plane, Reading& r) {
     const auto use = images_.use(object, key);
     if (!use) return std::nullopt;
-    if (!r.uv_set) r.uv_set = use->uv_set;
-    if (*r.uv_set != use->uv_set)
-        context_.not_honoured(
-            "a material reads more than one set of texture coordinates: all its textures use the "
-            "one that is read first",
-            use->offset);
-    return images_.texture(*use, plane, plane == Plane::color ? ColorSpace::srgb : ColorSpace::linear);
+    return texture(*use, plane, plane == Plane::color ? ColorSpace::srgb : ColorSpace::linear, r);
+}
+
+TextureId Materials::texture(const TextureUse& use, Plane plane, ColorSpace space, Reading& r) {
+    r.uv_sets |= 1u << use.uv_set;
+    return images_.texture(use, plane, space);
+}
+
+/// Section 3.7.2.1 of the specification: COLOR_0 multiplies what factor and texture say.
+void Materials::multiply_by_vertices(std::optional<TextureId>& texture, bool alpha) {
+    std::optional<TextureId>& vertices = vertex_colors_[alpha];
+    if (!vertices) vertices = context_.assets.add_texture(VertexColorTexture{alpha}, "COLOR_0");
+    texture = texture ? context_.assets.add_texture(ProductTexture{*texture, *vertices}, "") : *vertices;
 }
 
 /// Section 3.9.2 of the specification.
 void Materials::read_metallic_roughness(const Object& material, Reading& r) {
     OpenPbrMaterial& s = r.surface;
-    s.base_color = {{1, 1, 1}};
-    s.base_metalness = {1};
-    s.specular_roughness = {1};
     const auto pbr = material.object("pbrMetallicRoughness");
     if (!pbr) return;
     if (const auto factor = pbr->numbers("baseColorFactor", 4, kNotNegative)) {
@@ -74,7 +79,8 @@ void Materials::read_alpha(const Object& material, Reading& r) {
         s.geometry_opacity = {1};
         return;
     }
-    if (r.base_color) s.geometry_opacity.texture = images_.texture(*r.base_color, Plane::alpha, ColorSpace::linear);
+    if (r.base_color) s.geometry_opacity.texture = texture(*r.base_color, Plane::alpha, ColorSpace::linear, r);
+    if (r.colors == VertexColors::rgba) multiply_by_vertices(s.geometry_opacity.texture, true);
     if (mode == "BLEND") return;
     const double cutoff = material.number_or("alphaCutoff", 0.5, kNotNegative);
     if (cutoff > 1) s.geometry_opacity = {0};
@@ -91,6 +97,16 @@ void Materials::read_emission(const Object& material, Reading& r) {
         context_.not_honoured("an emissive texture has no effect: the surface does not shine", use->offset);
         r.emission = {0, 0, 0};
     }
+}
+
+/// The default material of the specification.
+Materials::Reading Materials::start(VertexColors colors) {
+    Reading r;
+    r.colors = colors;
+    r.surface.base_color = {{1, 1, 1}};
+    r.surface.base_metalness = {1};
+    r.surface.specular_roughness = {1};
+    return r;
 }
 
 /// Some surfaces have materials of their own, which are exact and take less time.
@@ -131,36 +147,55 @@ MaterialId Materials::make(const Reading& r, const std::string& name) {
     return context_.assets.add_material(r.surface, name);
 }
 
-Look Materials::read(const Object& material, const std::string& name) {
-    Reading r;
-    read_metallic_roughness(material, r);
-    read_alpha(material, r);
-    read_emission(material, r);
-    read_extensions(material, r);
-    if (const auto use = images_.use(material, "normalTexture"))
-        context_.not_honoured("a normal texture has no effect", use->offset);
+/// Section 3.9.3. The map turns the normals; `scale` multiplies what is along the surface.
+void Materials::read_normals(const Object& material, Reading& r) {
+    const auto use = images_.use(material, "normalTexture");
+    if (!use) return;
+    constexpr double kMost = 100;
+    const Object info = *material.object("normalTexture");
+    const double scale = info.number_or("scale", 1, {-1e30, 1e30});
+    if (std::fabs(scale) > kMost)
+        context_.not_honoured("the 'scale' of a normal texture beyond 100 is taken as 100", info.offset_of("scale"));
+    r.normals = NormalMap{texture(*use, Plane::color, ColorSpace::linear, r),
+                          static_cast<float>(clamp_to(scale, -kMost, kMost))};
+    r.tangents = use->uv_set;
+}
+
+Look Materials::finish(const Reading& r, const std::string& name) {
     Look out;
     out.material = make(r, name);
     out.emission = r.emission;
-    out.two_sided = material.boolean_or("doubleSided", false);
-    out.uv_set = r.uv_set.value_or(0);
+    out.uv_sets = r.uv_sets;
+    if (r.normals) context_.loaded.scene.reliefs.push_back({out.material, *r.normals});
+    const bool has_grain = r.surface.specular_roughness_anisotropy > 0;
+    out.tangents = r.tangents ? r.tangents : has_grain ? std::optional(0u) : std::nullopt;
+    if (out.tangents) out.uv_sets |= 1u << *out.tangents;
     return out;
 }
 
-const Look& Materials::look(std::optional<uint32_t> number) {
+Look Materials::read(const Object& material, VertexColors colors, const std::string& name) {
+    Reading r = start(colors);
+    read_metallic_roughness(material, r);
+    if (colors != VertexColors::none) multiply_by_vertices(r.surface.base_color.texture, false);
+    read_alpha(material, r);
+    read_emission(material, r);
+    read_extensions(material, r);
+    if (!r.unlit) read_normals(material, r);
+    Look out = finish(r, name);
+    out.two_sided = material.boolean_or("doubleSided", false);
+    return out;
+}
+
+const Look& Materials::look(std::optional<uint32_t> number, VertexColors colors) {
+    const std::pair key(number, colors);
+    if (const auto known = looks_.find(key); known != looks_.end()) return known->second;
     if (!number) {
-        if (!default_) {
-            Reading r;
-            r.surface.base_color = {{1, 1, 1}};
-            r.surface.base_metalness = {1};
-            r.surface.specular_roughness = {1};
-            default_ = Look{make(r, "default material")};
-        }
-        return *default_;
+        Reading r = start(colors);
+        if (colors != VertexColors::none) multiply_by_vertices(r.surface.base_color.texture, false);
+        return looks_.emplace(key, finish(r, "default material")).first->second;
     }
-    if (const auto known = looks_.find(*number); known != looks_.end()) return known->second;
     const Object material(context_.source, context_.tables.materials.elements[*number], "a material");
-    return looks_.emplace(*number, read(material, name_of(material, "material", *number))).first->second;
+    return looks_.emplace(key, read(material, colors, name_of(material, "material", *number))).first->second;
 }
 
 }  // namespace steradian::gltf

@@ -13,35 +13,48 @@ struct Look {
     MaterialId material{};
     Rgb emission{0, 0, 0};
     bool two_sided = false;  ///< emits on both sides; everything else of it is seen from both sides anyway
-    uint32_t uv_set = 0;     ///< which texture coordinates its textures read
+    uint32_t uv_sets = 0;    ///< which texture coordinates its textures read: bit n stands for TEXCOORD_n
+    /// Its mesh needs tangents, along these texture coordinates where it has none.
+    std::optional<uint32_t> tangents = std::nullopt;
 };
+
+/// What COLOR_0 of a primitive has.
+enum class VertexColors : uint8_t { none, rgb, rgba };
 
 class Materials {
 public:
     Materials(Context& context, Images& images) : context_(context), images_(images) {}
 
     /// Of a primitive; nothing: the default material of the specification.
-    const Look& look(std::optional<uint32_t> number);
+    const Look& look(std::optional<uint32_t> number, VertexColors colors);
 
 private:
     /// One material while it is being read.
     struct Reading {
         OpenPbrMaterial surface;
         Rgb emission{0, 0, 0};
-        std::optional<uint32_t> uv_set;
+        VertexColors colors = VertexColors::none;
+        uint32_t uv_sets = 0;
+        std::optional<NormalMap> normals;
+        std::optional<uint32_t> tangents;
         std::optional<TextureUse> base_color;
         bool unlit = false;
         bool solid = true;  ///< what transmits encloses a volume; false: it is a thin sheet
         float diffuse_transmission = 0;
         Rgb diffuse_transmission_color{1, 1, 1};
     };
-    Look read(const Object& material, const std::string& name);
+    static Reading start(VertexColors colors);
+    Look read(const Object& material, VertexColors colors, const std::string& name);
+    Look finish(const Reading& r, const std::string& name);
     void read_metallic_roughness(const Object& material, Reading& r);
     void read_alpha(const Object& material, Reading& r);
     void read_emission(const Object& material, Reading& r);
+    void read_normals(const Object& material, Reading& r);
+    void multiply_by_vertices(std::optional<TextureId>& texture, bool alpha);
     MaterialId make(const Reading& r, const std::string& name);
     std::optional<Material> make_simple(const Reading& r, const std::string& name);
     std::optional<TextureId> texture(const Object& object, std::string_view key, Plane plane, Reading& r);
+    TextureId texture(const TextureUse& use, Plane plane, ColorSpace space, Reading& r);
     float unit(const Object& object, std::string_view key, float fallback);
     /// Of an extension's texture that the scene has no place for.
     void no_texture(const Object& object, std::string_view key);
@@ -57,8 +70,8 @@ private:
 
     Context& context_;
     Images& images_;
-    std::map<uint32_t, Look> looks_;
-    std::optional<Look> default_;
+    std::map<std::pair<std::optional<uint32_t>, VertexColors>, Look> looks_;
+    std::array<std::optional<TextureId>, 2> vertex_colors_;
 };
 
 }  // namespace steradian::gltf

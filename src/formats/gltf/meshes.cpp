@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "formats/mesh/tangent_space.h"
+#include "math/vector.h"
+
 namespace steradian::gltf {
 namespace {
 
@@ -39,14 +42,26 @@ Accessor Meshes::open_attribute(const Object& primitive, std::string_view name, 
     return accessor;
 }
 
+Accessor Meshes::open_attribute(const Object& primitive, std::string_view name, uint32_t number, uint32_t components,
+                                uint64_t vertices) {
+    const Accessor accessor = open_attribute(primitive, name, number, components);
+    if (accessor.count != vertices) {
+        const Object attributes(context_.source, primitive.require("attributes"), "'attributes'");
+        context_.source.fail(attributes.offset_of(name), quoted(name) + " has " + std::to_string(accessor.count) +
+                                                             " elements, but there are " + std::to_string(vertices) +
+                                                             " positions");
+    }
+    return accessor;
+}
+
 std::vector<uint32_t> Meshes::corners(const Object& primitive, const Key& key, uint64_t vertices) {
     std::vector<uint32_t> out;
-    if (key[3] == kNone) {
+    if (key.indices == kNone) {
         context_.budget.take(vertices * sizeof(uint32_t), context_.source, primitive.offset());
         out.resize(vertices);
         std::iota(out.begin(), out.end(), 0u);
     } else {
-        const Accessor accessor = accessors_.open(key[3]);
+        const Accessor accessor = accessors_.open(key.indices);
         out = accessors_.read_indices(accessor);
         const auto wrong = std::find_if(out.begin(), out.end(), [&](uint32_t i) { return i >= vertices; });
         if (wrong != out.end()) {
@@ -58,7 +73,7 @@ std::vector<uint32_t> Meshes::corners(const Object& primitive, const Key& key, u
                                  *wrong == largest ? "glTF does not know primitive restart" : "");
         }
     }
-    const uint32_t mode = key[4];
+    const uint32_t mode = key.mode;
     if (mode == kTriangles ? out.size() % 3 != 0 : out.size() < 3)
         context_.warn("the number of corners does not make whole triangles; what is left over is ignored",
                       primitive.offset());
@@ -67,30 +82,98 @@ std::vector<uint32_t> Meshes::corners(const Object& primitive, const Key& key, u
     return as_triangles(std::move(out), mode);
 }
 
+/// All sets that textures read; zeros where the primitive has no such set.
+void Meshes::read_uvs(const Object& primitive, const Key& key, Mesh& mesh) {
+    const uint64_t vertices = mesh.positions.size();
+    for (uint32_t set = 0; set < kMaxUvSets; ++set) {
+        if (!(key.uv_sets >> set & 1)) continue;
+        std::vector<Vec2> uvs;
+        if (key.uvs[set] == kNone) {
+            context_.warn("a primitive lacks texture coordinates that its material reads: zeros are used",
+                          primitive.offset());
+            context_.budget.take(vertices * sizeof(Vec2), context_.source, primitive.offset());
+            uvs.resize(vertices);
+        } else {
+            const std::string name = "TEXCOORD_" + std::to_string(set);
+            uvs = accessors_.read_vec2(open_attribute(primitive, name, key.uvs[set], 2, vertices));
+        }
+        if (set > 0) mesh.more_uvs.resize(set);
+        (set == 0 ? mesh.uvs : mesh.more_uvs[set - 1]) = std::move(uvs);
+    }
+}
+
+void Meshes::read_colors(const Object& primitive, const Key& key, Mesh& mesh) {
+    const uint32_t components = colors_of(primitive) == VertexColors::rgba ? 4 : 3;
+    const Accessor colors = open_attribute(primitive, "COLOR_0", key.colors, components, mesh.positions.size());
+    bool clamped = false;
+    const auto unit = [&](float& x) {
+        if (x >= 0 && x <= 1) return;
+        x = clamp_to(x, 0.0f, 1.0f);
+        clamped = true;
+    };
+    mesh.colors = accessors_.read_rgb(colors);
+    for (Rgb& c : mesh.colors) unit(c.r), unit(c.g), unit(c.b);
+    if (components == 4) mesh.alphas = accessors_.read_component(colors, 3);
+    for (float& a : mesh.alphas) unit(a);
+    if (clamped) context_.warn("colours of vertices must be between 0 and 1 and were clamped", colors.offset);
+}
+
 std::optional<Mesh> Meshes::read(const Object& primitive, const Key& key) {
-    const Accessor positions = open_attribute(primitive, "POSITION", key[0], 3);
+    const Accessor positions = open_attribute(primitive, "POSITION", key.positions, 3);
     Mesh mesh;
     mesh.indices = corners(primitive, key, positions.count);
     if (mesh.indices.empty()) return std::nullopt;
     mesh.positions = accessors_.read_vec3(positions);
-    const auto check_count = [&](const Accessor& accessor, std::string_view name) {
-        if (accessor.count == positions.count) return;
-        const Object attributes(context_.source, primitive.require("attributes"), "'attributes'");
-        context_.source.fail(attributes.offset_of(name), quoted(name) + " has " + std::to_string(accessor.count) +
-                                                             " elements, but there are " +
-                                                             std::to_string(positions.count) + " positions");
-    };
-    if (key[1] != kNone) {
-        const Accessor normals = open_attribute(primitive, "NORMAL", key[1], 3);
-        check_count(normals, "NORMAL");
-        mesh.normals = accessors_.read_vec3(normals);
-    }
-    if (key[2] != kNone) {
-        const Accessor uvs = open_attribute(primitive, "TEXCOORD", key[2], 2);
-        check_count(uvs, "TEXCOORD");
-        mesh.uvs = accessors_.read_vec2(uvs);
+    if (key.normals != kNone)
+        mesh.normals = accessors_.read_vec3(open_attribute(primitive, "NORMAL", key.normals, 3, positions.count));
+    read_uvs(primitive, key, mesh);
+    if (key.colors != kNone) read_colors(primitive, key, mesh);
+    if (key.tangents != kNone)
+        mesh.tangents =
+            accessors_.read_tangents(open_attribute(primitive, "TANGENT", key.tangents, 4, positions.count));
+    if (key.made_tangents) {
+        constexpr uint64_t kMostPerCorner = sizeof(Tangent) + sizeof(Vec3) * 2 + sizeof(Vec2);
+        context_.budget.take(mesh.indices.size() * kMostPerCorner, context_.source, primitive.offset());
+        add_tangents(mesh, *key.made_tangents);
     }
     return mesh;
+}
+
+Meshes::Key Meshes::key_of(const Object& primitive, const Object& attributes, const Look& look, uint32_t mode) {
+    const auto accessor = [&](const Object& object, std::string_view name) {
+        return object.reference(name, context_.tables.accessors).value_or(kNone);
+    };
+    Key key;
+    key.positions = accessor(attributes, "POSITION");
+    key.normals = accessor(attributes, "NORMAL");
+    key.colors = accessor(attributes, "COLOR_0");
+    key.indices = accessor(primitive, "indices");
+    key.mode = mode;
+    key.uv_sets = look.uv_sets;
+    key.uvs.fill(kNone);
+    for (uint32_t set = 0; set < kMaxUvSets; ++set)
+        if (look.uv_sets >> set & 1) key.uvs[set] = accessor(attributes, "TEXCOORD_" + std::to_string(set));
+    // Flat normals leave no use for tangents of vertices (section 3.7.2.1 of the specification).
+    if (look.tangents && key.normals != kNone) {
+        key.tangents = accessor(attributes, "TANGENT");
+        if (key.tangents == kNone) key.made_tangents = look.tangents;
+    }
+    return key;
+}
+
+/// By the type of its accessor.
+VertexColors Meshes::colors_of(const Object& primitive) {
+    const auto attributes = primitive.object("attributes");
+    const auto number = attributes ? attributes->reference("COLOR_0", context_.tables.accessors) : std::nullopt;
+    if (!number) return VertexColors::none;
+    const Accessor colors = accessors_.open(*number);
+    const bool whole = colors.component == ComponentType::u8 || colors.component == ComponentType::u16;
+    if ((colors.components != 3 && colors.components != 4) ||
+        !(colors.component == ComponentType::f32 || (whole && colors.normalized)))
+        context_.source.fail(attributes->offset_of("COLOR_0"),
+                             "'COLOR_0' must be vectors of 3 or 4 floats, or of normalised UNSIGNED_BYTE or "
+                             "UNSIGNED_SHORT");
+    return colors.components == 4 ? VertexColors::rgba : VertexColors::rgb;
 }
 
 std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, const std::string& name) {
@@ -100,18 +183,11 @@ std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, 
         context_.not_honoured("points and lines are not rendered", primitive.offset());
         return std::nullopt;
     }
-    const auto accessor = [&](const Object& object, std::string_view key) {
-        return object.reference(key, context_.tables.accessors).value_or(kNone);
-    };
-    const Key key{accessor(attributes, "POSITION"), accessor(attributes, "NORMAL"),
-                  accessor(attributes, "TEXCOORD_" + std::to_string(look.uv_set)), accessor(primitive, "indices"),
-                  mode};
-    if (key[0] == kNone) {
+    const Key key = key_of(primitive, attributes, look, mode);
+    if (key.positions == kNone) {
         context_.warn("a primitive without positions is ignored", attributes.offset());
         return std::nullopt;
     }
-    if (attributes.has("COLOR_0"))
-        context_.not_honoured("the colours of vertices have no effect", attributes.offset_of("COLOR_0"));
     if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;
     std::optional<ShapeId> made;
     if (auto mesh = read(primitive, key)) {
@@ -143,7 +219,7 @@ const std::vector<Meshes::Part>& Meshes::parts(uint32_t number) {
     std::vector<Part> parts;
     for (const Value value : mesh.array("primitives")) {
         const Object primitive(context_.source, value, "a primitive");
-        const Look& look = materials_.look(material_of(primitive));
+        const Look& look = materials_.look(material_of(primitive), colors_of(primitive));
         if (const auto made = shape(primitive, look, name)) parts.push_back({*made, look});
         if (!primitive.array("targets").empty())
             context_.not_honoured("morph targets are not applied", primitive.offset_of("targets"));

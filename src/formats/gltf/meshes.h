@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <map>
 #include <vector>
 
@@ -24,14 +25,28 @@ public:
 
 private:
     static constexpr uint32_t kNone = 0xffffffffu;
-    /// Accessors that make a primitive what it is: positions, normals, texture coordinates, indices; and the mode.
-    using Key = std::array<uint32_t, 5>;
+    /// What makes the triangles of a primitive: accessors, kNone where there is none, and what is made of them.
+    struct Key {
+        uint32_t positions = kNone, normals = kNone, tangents = kNone, colors = kNone, indices = kNone;
+        std::array<uint32_t, kMaxUvSets> uvs{};
+        uint32_t mode = 0;
+        uint32_t uv_sets = 0;                                  ///< bits: those that somebody reads
+        std::optional<uint32_t> made_tangents = std::nullopt;  ///< along these coordinates
+        auto operator<=>(const Key&) const = default;
+    };
 
     std::optional<uint32_t> material_of(const Object& primitive);
     std::optional<ShapeId> shape(const Object& primitive, const Look& look, const std::string& name);
+    Key key_of(const Object& primitive, const Object& attributes, const Look& look, uint32_t mode);
     std::optional<Mesh> read(const Object& primitive, const Key& key);
+    void read_uvs(const Object& primitive, const Key& key, Mesh& mesh);
+    void read_colors(const Object& primitive, const Key& key, Mesh& mesh);
+    VertexColors colors_of(const Object& primitive);
     std::vector<uint32_t> corners(const Object& primitive, const Key& key, uint64_t vertices);
     Accessor open_attribute(const Object& primitive, std::string_view name, uint32_t accessor, uint32_t components);
+    /// The same, with as many elements as the primitive has vertices.
+    Accessor open_attribute(const Object& primitive, std::string_view name, uint32_t accessor, uint32_t components,
+                            uint64_t vertices);
 
     Context& context_;
     Accessors& accessors_;
