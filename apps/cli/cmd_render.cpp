@@ -67,12 +67,12 @@ public:
     }
 };
 
-std::string default_output(const std::string& scene) {
+std::string default_output(const std::string& scene, const char* format) {
     const size_t slash = scene.find_last_of('/');
     std::string name = slash == std::string::npos ? scene : scene.substr(slash + 1);
     const std::string extension = extension_of(name);
     name.resize(name.size() - extension.size());
-    return name + ".png";
+    return name + format;
 }
 
 /// In seconds: 90, 90s, 1.5m or 2h.
@@ -113,6 +113,7 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     w.StartObject();
     write_field(w, "scene", o.scene);
     write_field(w, "hash", image_hash(r.image));
+    if (!s.aovs.empty()) write_field(w, "color_hash", image_hash(color_channels(r.image)));
     number("width", r.image.width), number("height", r.image.height);
     number("spp", r.out_of_time ? r.min_samples : s.samples_per_pixel);
     w.Key("complete"), w.Bool(r.complete);
@@ -216,11 +217,21 @@ Result<RenderResult> run_job(const RenderOptions& o, std::shared_ptr<const Rende
     return result;
 }
 
+/// Only EXR holds more than colour.
+Status check_aovs(const std::vector<std::string>& outputs, AovSet aovs) {
+    const auto is_exr = [](const std::string& path) { return extension_of(path) == ".exr"; };
+    if (aovs.empty() || outputs.empty() || std::any_of(outputs.begin(), outputs.end(), is_exr)) return Ok{};
+    return usage_error(
+        fmt::format("output {}: the AOVs {} need an EXR file", escape_for_display(outputs[0], 4096), names_in(aovs)),
+        "--output FILE.exr as well, or --aovs none");
+}
+
 /// Tries every output, whatever becomes of the others, and reports the failures. Returns those that were written.
 std::vector<std::string> write_outputs(const RenderOptions& o, const Image& image, Diagnostics& diagnostics) {
     std::vector<std::string> written;
     for (const std::string& path : o.outputs) {
-        const Status status = write_image(path, image, o.picture.write(), &diagnostics);
+        const bool whole = image.channels.size() == 3 || extension_of(path) == ".exr";
+        const Status status = write_image(path, whole ? image : color_channels(image), o.picture.write(), &diagnostics);
         status ? written.push_back(path) : void(report(status.error()));
     }
     return written;
@@ -244,6 +255,18 @@ int finish(const RenderOptions& o, const RenderSettings& settings, const RenderR
     return signal != 0 ? 128 + signal : kDone;
 }
 
+/// Their names over lines of the help.
+std::string aov_list() {
+    std::string out;
+    size_t column = 60;
+    for (const std::string_view name : names_of<Aov>()) {
+        if (column + name.size() > 90) out += out.empty() ? "" : "\n", column = 0;
+        out += std::string(name) + (name == names_of<Aov>().back() ? "" : ", ");
+        column += name.size() + 2;
+    }
+    return out;
+}
+
 /// By a signal.
 int stopped_early(const char* when) {
     std::cerr << fmt::format("stopped {}: nothing was written\n", when);
@@ -253,7 +276,8 @@ int stopped_early(const char* when) {
 int run_render(const RenderOptions& given) {
     SignalScope signals;
     RenderOptions o = given;
-    if (o.outputs.empty() && !o.json) o.outputs.push_back(default_output(o.scene));
+    const bool by_default = o.outputs.empty() && !o.json;
+    if (by_default) o.outputs.push_back(default_output(o.scene, ".png"));
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
     o.execution.bvh_layout = *find_name<BvhLayout>(o.bvh_layout);
     o.execution.isa = *find_name<Isa>(o.isa);
@@ -265,6 +289,9 @@ int run_render(const RenderOptions& given) {
     if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     const auto said = parse_overrides(o.settings, o.execution);
     if (!said) return report(said.error());
+    if (auto status = check_aovs(by_default ? std::vector<std::string>() : o.outputs, said->aovs.value_or(AovSet()));
+        !status)
+        return report(status.error());
     const auto loading = load_options(o.settings);
     if (!loading) return report(loading.error());
 
@@ -275,6 +302,11 @@ int run_render(const RenderOptions& given) {
     if (auto status = check_not_inputs(o.outputs, loaded->files); !status) return report(status.error());
     auto settings = settings_for(o.settings, *said, *loaded);
     if (!settings) return report(settings.error());
+    if (by_default && !settings->aovs.empty()) {
+        o.outputs = {default_output(o.scene, ".exr")};
+        if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
+    }
+    if (auto status = check_aovs(o.outputs, settings->aovs); !status) return report(status.error());
     // The scene's own number of samples is for those who do not say when to stop.
     if (o.execution.time_limit > 0 && !o.settings.spp) settings->samples_per_pixel = kMaxSamplesPerPixel;
     Diagnostics diagnostics = std::move(loaded->diagnostics);
@@ -304,9 +336,13 @@ void add_render(CLI::App& app, Action& action) {
     c->add_option("SCENE", o->scene, "The scene or model to render")->required()->type_name("FILE");
     c->add_option("-o,--output", o->outputs,
                   "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
-                  ".png in the current folder (with --json: no file)")
+                  ".png (.exr with AOVs) in the current folder (with --json: no file)")
         ->allow_extra_args(false)
         ->type_name("FILE")
+        ->group("Output");
+    c->add_option("--aovs", o->settings.aovs,
+                  fmt::format("Channels beside colour, for EXR; 'all', 'none' or some of: {}", aov_list()))
+        ->type_name("NAME,...")
         ->group("Output");
     add_picture_options(c, o->picture, "Output");
     add_settings_options(c, o->settings);

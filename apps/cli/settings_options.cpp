@@ -58,6 +58,22 @@ Result<Crop> parse_crop(const std::string& text) {
     return c;
 }
 
+Result<AovSet> parse_aovs(const std::string& text) {
+    if (text == "all") return AovSet::all();
+    AovSet out;
+    for (size_t begin = 0; text != "none" && begin <= text.size();) {
+        const size_t end = std::min(text.find(',', begin), text.size());
+        const std::string name = text.substr(begin, end - begin);
+        const auto aov = find_name<Aov>(name);
+        if (!aov)
+            return usage_error(fmt::format("--aovs: unknown AOV '{}'", escape_for_display(name)),
+                               suggestion(name, names_of<Aov>()));
+        out.add(*aov);
+        begin = end + 1;
+    }
+    return out;
+}
+
 /// Three numbers between commas.
 std::optional<Rgb> parse_color(std::string_view text) {
     Rgb out;
@@ -97,6 +113,7 @@ void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s
     if (said.whole) s.crop.reset();
     if (said.crop) s.crop = said.crop;
     if (said.filter) s.filter = *said.filter;
+    if (said.aovs) s.aovs = *said.aovs;
 }
 
 }  // namespace
@@ -138,6 +155,8 @@ Result<Overrides> parse_overrides(const SettingsOptions& o, const Execution& exe
         if (auto status = take(parse_crop(o.crop), said.crop); !status) return std::move(status).error();
     if (!o.filter.empty())
         if (auto status = take(parse_filter(o.filter), said.filter); !status) return std::move(status).error();
+    if (!o.aovs.empty())
+        if (auto status = take(parse_aovs(o.aovs), said.aovs); !status) return std::move(status).error();
     RenderSettings alone;
     if (said.crop) alone.width = said.crop->x1, alone.height = said.crop->y1;  // at least, if the scene says the size
     override(o, said, alone);

@@ -22,6 +22,7 @@ struct SettingsOptions {
     bool allow_outside_paths = false;
     std::optional<uint64_t> gltf_memory;  ///< MiB
     std::string variant, light_units;
+    std::string aovs;  ///< an option of `render` alone
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);
 
@@ -31,6 +32,7 @@ struct Overrides {
     std::optional<Crop> crop;
     bool whole = false;  ///< --crop all
     std::optional<Filter> filter;
+    std::optional<AovSet> aovs;
 };
 
 /// Whole numbers between separators, exactly `count` of them.

@@ -14,9 +14,7 @@ namespace {
 
 constexpr uint64_t kFreeBytes = 1 << 20;
 
-size_t texel_size(TexelFormat format) {
-    return format == TexelFormat::u8 ? 1 : format == TexelFormat::f32 ? 4 : 2;
-}
+size_t texel_size(TexelFormat format) { return format == TexelFormat::u8 ? 1 : format == TexelFormat::f32 ? 4 : 2; }
 
 /// What is accepted is consistent, and no larger than the budget says.
 void check_scene(const LoadedScene& loaded, uint64_t budget) {
@@ -36,8 +34,7 @@ void check_scene(const LoadedScene& loaded, uint64_t budget) {
     }
     require(bytes <= budget + scene.images.size());  // a white texel for what is not there
     for (const Texture& texture : scene.textures)
-        if (const auto* image = std::get_if<ImageTexture>(&texture))
-            require(index(image->image) < scene.images.size());
+        if (const auto* image = std::get_if<ImageTexture>(&texture)) require(index(image->image) < scene.images.size());
     for (const Instance& instance : scene.instances) {
         require(index(instance.shape) < scene.shapes.size() && index(instance.material) < scene.materials.size());
         for (const auto& row : instance.world_from_object.m)

@@ -1,5 +1,6 @@
-// Keeps the lengths inside of binary glTF right, so that mutations reach what is behind the container: one chunk at a time
-// is mutated and the file is put together again. One time in eight, and for text, the bytes are mutated as they are.
+// Keeps the lengths inside of binary glTF right, so that mutations reach what is behind the container: one chunk at a
+// time is mutated and the file is put together again. One time in eight, and for text, the bytes are mutated as they
+// are.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>

@@ -12,6 +12,10 @@
 
 namespace steradian {
 
+/// How a channel is stored where a format leaves a choice (EXR): as the writer's options say, always in 32-bit floats,
+/// or in whole numbers from 0 to 2³² - 1.
+enum class ChannelType : uint8_t { by_options, single, uint32 };
+
 /// A picture with named float channels, row by row from the top left corner, channels interleaved:
 /// pixels[(y * width + x) * channels.size() + c]. Values are linear Rec. 709 where the channel is a colour.
 struct Image {
@@ -21,7 +25,12 @@ struct Image {
     std::vector<float> pixels;
     std::map<std::string, std::string>
         metadata;  ///< text attributes, written to EXR and PNG; sorted, so files are equal
+    /// Of each channel, or nothing where all go by the options. Whole numbers are exact up to 2²⁴, as floats are.
+    std::vector<ChannelType> types;
 };
+
+/// R, G and B alone, in that order: of a picture with AOVs, the picture without them. Nothing when one is missing.
+Image color_channels(const Image& image);
 
 /// XXH3-128 over width, height, channel names and little-endian float32 pixels, as 32 hexadecimal digits.
 /// Metadata does not count. This is "the hash of the picture" everywhere in the project.

@@ -77,7 +77,8 @@ struct RenderStatistics {
 };
 
 struct RenderResult {
-    Image image;           ///< R, G, B of the crop window (or the whole picture), with metadata
+    /// R, G, B of the crop window (or the whole picture) and the AOVs that were asked for, with metadata.
+    Image image;
     bool complete = true;  ///< false after a cancel: `image` holds what was done, each pixel over its own sample count
     uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
     bool out_of_time = false;  ///< Execution::time_limit ended it; it is complete, with fewer samples than were allowed

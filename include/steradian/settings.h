@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,31 @@ enum class LightSampling : uint8_t { mis, light, bsdf };
 enum class LightChoice : uint8_t { bvh, power, uniform };
 enum class SamplerKind : uint8_t { sobol, independent };
 enum class FilterKind : uint8_t { box, tent, gaussian, mitchell };
+
+/// What a picture may have beside its colour, each in channels of its own; docs/aovs.md says what they hold.
+enum class Aov : uint8_t { alpha, albedo, normal, depth, position, uv, object, material, primitive, variance, samples };
+inline constexpr uint32_t kAovs = 11;
+
+class AovSet {
+public:
+    constexpr AovSet() = default;
+    constexpr AovSet(std::initializer_list<Aov> aovs) {
+        for (const Aov aov : aovs) add(aov);
+    }
+    static constexpr AovSet all() {
+        AovSet out;
+        out.bits_ = (1u << kAovs) - 1;
+        return out;
+    }
+    constexpr void add(Aov aov) { bits_ |= 1u << static_cast<uint32_t>(aov); }
+    constexpr bool has(Aov aov) const { return (bits_ >> static_cast<uint32_t>(aov) & 1) != 0; }
+    constexpr bool has_any(AovSet other) const { return (bits_ & other.bits_) != 0; }
+    constexpr bool empty() const { return bits_ == 0; }
+    bool operator==(const AovSet&) const = default;
+
+private:
+    uint32_t bits_ = 0;
+};
 
 /// Radius in pixels. The Gaussian has a standard deviation of a third of its radius and is shifted down to reach 0
 /// at the radius; Mitchell has B = C = 1/3.
@@ -50,6 +76,7 @@ struct RenderSettings {
     float ao_distance = 0;  ///< metres; `ao` counts what is nearer. 0: anything
     Filter filter;
     uint32_t camera = 0;  ///< index into Scene::cameras
+    AovSet aovs;          ///< of `path` and `direct`; the colour stays the same to the bit
 };
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;

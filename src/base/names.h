@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "steradian/settings.h"
@@ -22,6 +23,8 @@ inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "lig
 inline constexpr std::array<std::string_view, 3> kLightChoiceNames{"bvh", "power", "uniform"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
+inline constexpr std::array<std::string_view, kAovs> kAovNames{
+    "alpha", "albedo", "normal", "depth", "position", "uv", "object", "material", "primitive", "variance", "samples"};
 inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
 inline constexpr std::array<std::string_view, 2> kLayoutNames{"full", "compact"};
 inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "sse4", "avx2", "avx512", "neon"};
@@ -48,6 +51,10 @@ constexpr std::span<const std::string_view> names_of<FilterKind>() noexcept {
     return detail::kFilterNames;
 }
 template <>
+constexpr std::span<const std::string_view> names_of<Aov>() noexcept {
+    return detail::kAovNames;
+}
+template <>
 constexpr std::span<const std::string_view> names_of<BvhBuilder>() noexcept {
     return detail::kBuilderNames;
 }
@@ -71,6 +78,15 @@ constexpr std::optional<Kind> find_name(std::string_view name) noexcept {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) return std::nullopt;
     return static_cast<Kind>(found - names.begin());
+}
+
+/// "albedo,normal", in the order of the enumerators.
+inline std::string names_in(AovSet aovs) {
+    std::string out;
+    for (uint32_t i = 0; i < kAovs; ++i)
+        if (const auto aov = static_cast<Aov>(i); aovs.has(aov))
+            out += (out.empty() ? "" : ",") + std::string(name_of(aov));
+    return out;
 }
 
 /// The radius in pixels that a filter has when nothing is said.

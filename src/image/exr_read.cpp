@@ -157,6 +157,8 @@ Image read_channels(Reader& reader) {
     }
     image.pixels.resize(size_t(image.width) * image.height * image.channels.size());
     read_interleaved(reader, image.channels, Imf::FLOAT, image.pixels.data());
+    for (const std::string& name : image.channels)
+        image.types.push_back(part.find(name)->type == ExrType::uint32 ? ChannelType::uint32 : ChannelType::by_options);
     return image;
 }
 
@@ -195,6 +197,7 @@ Image placed(Image image, const ExrWindow& data, const ExrWindow& display) {
     out.width = static_cast<uint32_t>(display.width());
     out.height = static_cast<uint32_t>(display.height());
     out.channels = image.channels;
+    out.types = image.types;
     const size_t channels = out.channels.size();
     out.pixels.resize(size_t(out.width) * out.height * channels);
     const int64_t x0 = std::max(data.x0, display.x0), x1 = std::min(data.x1, display.x1);

@@ -60,22 +60,45 @@ Imf::Header make_header(const Image& image, const std::string& path) {
     return header;
 }
 
-/// Half has no values beyond ±65504: clamps those, infinities too, and says how many. NaN stays.
-std::vector<half> to_half(const std::vector<float>& pixels, const std::string& path, Diagnostics& diagnostics) {
-    std::vector<half> out;
-    out.reserve(pixels.size());
-    uint64_t clamped = 0;
-    for (float value : pixels) {
-        if (value > kHalfMax || value < -kHalfMax) {
-            ++clamped;
-            value = value > 0 ? kHalfMax : -kHalfMax;
+/// A channel by itself, in another type than the picture's. Half has no values beyond ±65504, a whole number none
+/// outside 0 … 2³² - 1: clamps those, and says how many. NaN stays in half and is 0 as a whole number.
+struct Plane {
+    std::vector<half> halves;
+    std::vector<uint32_t> wholes;
+};
+
+Plane plane_of(const Image& image, size_t channel, Imf::PixelType type, uint64_t& clamped) {
+    Plane out;
+    const size_t channels = image.channels.size(), count = image.pixels.size() / channels;
+    type == Imf::HALF ? out.halves.reserve(count) : out.wholes.reserve(count);
+    for (size_t i = channel; i < image.pixels.size(); i += channels) {
+        float value = image.pixels[i];
+        if (type == Imf::HALF) {
+            clamped += value > kHalfMax || value < -kHalfMax;
+            if (value > kHalfMax || value < -kHalfMax) value = value > 0 ? kHalfMax : -kHalfMax;
+            out.halves.emplace_back(value);
+        } else {
+            const bool inside = value >= 0 && value < 0x1p32f;
+            clamped += !inside;
+            out.wholes.push_back(inside ? static_cast<uint32_t>(value) : value > 0 ? 0xffffffffu : 0);
         }
-        out.emplace_back(value);
     }
-    if (clamped)
-        diagnostics.warn("a value beyond ±65504 was clamped, the most that half precision holds", {path, 0, 0, {}},
-                         clamped);
     return out;
+}
+
+Imf::PixelType type_of(const Image& image, size_t channel, ExrPrecision precision) {
+    const ChannelType type = image.types.empty() ? ChannelType::by_options : image.types[channel];
+    if (type == ChannelType::uint32) return Imf::UINT;
+    return type == ChannelType::by_options && precision == ExrPrecision::half ? Imf::HALF : Imf::FLOAT;
+}
+
+void warn_clamped(uint64_t halves, uint64_t wholes, const std::string& path, Diagnostics& diagnostics) {
+    if (halves)
+        diagnostics.warn("a value beyond ±65504 was clamped, the most that half precision holds", {path, 0, 0, {}},
+                         halves);
+    if (wholes)
+        diagnostics.warn("a value in a channel of whole numbers was not one from 0 to 4294967295", {path, 0, 0, {}},
+                         wholes);
 }
 
 }  // namespace
@@ -88,20 +111,29 @@ std::string encode_exr(const Image& image, ExrPrecision precision, const std::st
         for (const std::string& name : image.channels) order += (order.empty() ? "" : ",") + name;
         header.insert(kChannelOrder, Imf::StringAttribute(order));
     }
-    const bool as_half = precision == ExrPrecision::half;
-    const Imf::PixelType type = as_half ? Imf::HALF : Imf::FLOAT;
-    const std::vector<half> halves = as_half ? to_half(image.pixels, path, diagnostics) : std::vector<half>();
-    const char* base =
-        as_half ? reinterpret_cast<const char*>(halves.data()) : reinterpret_cast<const char*>(image.pixels.data());
-    const size_t value_size = as_half ? sizeof(half) : sizeof(float);
-    const size_t pixel_size = value_size * image.channels.size();
-
+    const size_t channels = image.channels.size(), pixel_size = sizeof(float) * channels;
+    uint64_t clamped_halves = 0, clamped_wholes = 0;
+    std::vector<Plane> planes(channels);
     Imf::FrameBuffer frame;
-    for (size_t c = 0; c < image.channels.size(); ++c) {
+    for (size_t c = 0; c < channels; ++c) {
+        const Imf::PixelType type = type_of(image, c, precision);
         header.channels().insert(image.channels[c], Imf::Channel(type));
-        frame.insert(image.channels[c],
-                     Imf::Slice(type, const_cast<char*>(base + c * value_size), pixel_size, pixel_size * image.width));
+        // OpenEXR only reads what it is to write.
+        const auto add = [&](const auto* values, size_t pixel_step) {
+            char* base = reinterpret_cast<char*>(
+                const_cast<std::remove_const_t<std::remove_pointer_t<decltype(values)>>*>(values));
+            frame.insert(image.channels[c], Imf::Slice(type, base, pixel_step, pixel_step * image.width));
+        };
+        if (type != Imf::FLOAT)
+            planes[c] = plane_of(image, c, type, type == Imf::HALF ? clamped_halves : clamped_wholes);
+        if (type == Imf::FLOAT)
+            add(image.pixels.data() + c, pixel_size);
+        else if (type == Imf::HALF)
+            add(planes[c].halves.data(), sizeof(half));
+        else
+            add(planes[c].wholes.data(), sizeof(uint32_t));
     }
+    warn_clamped(clamped_halves, clamped_wholes, path, diagnostics);
     MemoryWriter writer;
     {
         Imf::OutputFile file(writer, header, 0);

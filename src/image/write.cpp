@@ -25,6 +25,9 @@ Status check_image(const Image& image, const std::string& path) {
         image.pixels.size() % image.channels.size() != 0)
         return usage_error(path, fmt::format("the picture is {} × {} with {} channels but holds {} values", image.width,
                                              image.height, image.channels.size(), image.pixels.size()));
+    if (!image.types.empty() && image.types.size() != image.channels.size())
+        return usage_error(path, fmt::format("the picture has {} channels and types of {}", image.channels.size(),
+                                             image.types.size()));
     std::set<std::string> names;
     for (const std::string& name : image.channels)
         if (name.empty() || name.size() > 255 || name.find('\0') != name.npos || !names.insert(name).second)

@@ -17,41 +17,41 @@ std::vector<TileRect> cut(Crop window, uint32_t size) {
 
 }  // namespace
 
-Film::Film(Crop window, uint32_t tile_size) : window_(window) {
+Film::Film(Crop window, uint32_t tile_size, AovSet aovs) : window_(window), kinds_(aovs), channels_(aovs) {
     const std::vector<TileRect> rects = cut(window, tile_size);
     tiles_ = std::vector<Tile>(rects.size());
     for (size_t i = 0; i < rects.size(); ++i) {
         tiles_[i].rect = rects[i];
-        tiles_[i].sums.resize(rects[i].pixels());
+        tiles_[i].sums = empty_sums(i);
     }
 }
 
-void Film::commit(size_t tile_index, uint64_t block, uint32_t samples, std::vector<RgbSum> sums) {
+void Film::commit(size_t tile_index, uint64_t block, uint32_t samples, TileSums sums) {
     Tile& tile = tiles_[tile_index];
     const std::lock_guard lock(tile.mutex);
     tile.held_back.emplace(block, Block{samples, std::move(sums)});
     for (auto next = tile.held_back.begin(); next != tile.held_back.end() && next->first == tile.next_block;
          next = tile.held_back.erase(next)) {
-        for (size_t i = 0; i < tile.sums.size(); ++i) tile.sums[i] += next->second.sums[i];
+        tile.sums += next->second.sums;
         tile.samples += next->second.samples;
         ++tile.next_block;
     }
 }
 
-std::vector<RgbSum> Film::open_sums(size_t tile_index) const {
+TileSums Film::open_sums(size_t tile_index) const {
     const Tile& tile = tiles_[tile_index];
     const std::lock_guard lock(tile.mutex);
-    return tile.open.samples > 0 ? tile.open.sums : std::vector<RgbSum>(tile.rect.pixels());
+    return tile.open.samples > 0 ? tile.open.sums : empty_sums(tile_index);
 }
 
-void Film::extend(size_t tile_index, uint32_t samples, std::vector<RgbSum> sums) {
+void Film::extend(size_t tile_index, uint32_t samples, TileSums sums) {
     Tile& tile = tiles_[tile_index];
     const std::lock_guard lock(tile.mutex);
     tile.open.sums = std::move(sums);
     tile.open.samples += samples;
     tile.samples += samples;
     if (tile.open.samples < kBlockSamples) return;
-    for (size_t i = 0; i < tile.sums.size(); ++i) tile.sums[i] += tile.open.sums[i];
+    tile.sums += tile.open.sums;
     tile.open = {};
     ++tile.next_block;
 }
@@ -60,21 +60,17 @@ Image Film::develop() const {
     Image image;
     image.width = window_.x1 - window_.x0;
     image.height = window_.y1 - window_.y0;
-    image.channels = {"R", "G", "B"};
-    image.pixels.resize(size_t(image.width) * image.height * 3);
+    channels_.describe(image);
+    image.pixels.resize(size_t(image.width) * image.height * channels_.count());
     for (const Tile& tile : tiles_) {
         const std::lock_guard lock(tile.mutex);
         if (tile.samples == 0) continue;
-        const auto count = static_cast<double>(tile.samples);
+        const TileSums* open = tile.open.samples > 0 ? &tile.open.sums : nullptr;
         for (uint32_t i = 0; i < tile.rect.pixels(); ++i) {
             const size_t x = tile.rect.x0 - window_.x0 + i % tile.rect.width();
             const size_t y = tile.rect.y0 - window_.y0 + i / tile.rect.width();
-            float* pixel = &image.pixels[(y * image.width + x) * 3];
-            RgbSum sum = tile.sums[i];
-            if (tile.open.samples > 0) sum += tile.open.sums[i];
-            pixel[0] = static_cast<float>(sum.r / count);
-            pixel[1] = static_cast<float>(sum.g / count);
-            pixel[2] = static_cast<float>(sum.b / count);
+            channels_.develop(tile.sums.pixel(i, open), tile.samples,
+                              &image.pixels[(y * image.width + x) * channels_.count()]);
         }
     }
     return image;

@@ -8,7 +8,8 @@
 #include <mutex>
 #include <vector>
 
-#include "math/vector.h"
+#include "render/aov.h"
+#include "render/sums.h"
 #include "steradian/image.h"
 #include "steradian/settings.h"
 
@@ -23,37 +24,26 @@ struct TileRect {
     uint32_t pixels() const { return (x1 - x0) * (y1 - y0); }
 };
 
-struct RgbSum {
-    double r = 0, g = 0, b = 0;
-    void add(Rgb value, float weight) {
-        r += double(value.r) * double(weight);
-        g += double(value.g) * double(weight);
-        b += double(value.b) * double(weight);
-    }
-    RgbSum& operator+=(const RgbSum& other) {
-        r += other.r, g += other.g, b += other.b;
-        return *this;
-    }
-};
-
 class Film {
 public:
-    Film(Crop window, uint32_t tile_size);
+    Film(Crop window, uint32_t tile_size, AovSet aovs = {});
 
     /// What a tile takes besides its sums, for estimates of memory.
     static size_t tile_bytes() noexcept { return sizeof(Tile) + sizeof(TileRect); }
     size_t tiles() const noexcept { return tiles_.size(); }
     const TileRect& rect(size_t tile) const noexcept { return tiles_[tile].rect; }
 
-    /// Hands over the sums of one block of one tile, a sum per pixel row by row; from any thread, each block once.
-    void commit(size_t tile, uint64_t block, uint32_t samples, std::vector<RgbSum> sums);
+    /// The sums of a tile without samples.
+    TileSums empty_sums(size_t tile) const { return {tiles_[tile].rect.pixels(), kinds_}; }
+    /// Hands over the sums of one block of one tile; from any thread, each block once.
+    void commit(size_t tile, uint64_t block, uint32_t samples, TileSums sums);
 
     /// For blocks in parts, one after the other: the sums of the open block of a tile, and what they have become after
     /// `samples` more samples a pixel. A block that is full is folded.
-    std::vector<RgbSum> open_sums(size_t tile) const;
-    void extend(size_t tile, uint32_t samples, std::vector<RgbSum> sums);
+    TileSums open_sums(size_t tile) const;
+    void extend(size_t tile, uint32_t samples, TileSums sums);
 
-    /// R, G, B means over the samples that were folded; 0 where there are none. Safe while others commit.
+    /// R, G, B means over the samples that were folded, and the AOVs; 0 where there are none. Safe while others commit.
     Image develop() const;
     struct Range {
         uint64_t min = 0, max = 0;
@@ -63,18 +53,20 @@ public:
 private:
     struct Block {
         uint32_t samples = 0;
-        std::vector<RgbSum> sums;
+        TileSums sums;
     };
     struct Tile {
         TileRect rect;
         mutable std::mutex mutex;
         uint64_t next_block = 0;
         uint64_t samples = 0;
-        std::vector<RgbSum> sums;
+        TileSums sums;
         std::map<uint64_t, Block> held_back;
         Block open;  ///< begun, of extend()
     };
     Crop window_;
+    SumKinds kinds_;
+    PictureChannels channels_;
     std::vector<Tile> tiles_;
 };
 

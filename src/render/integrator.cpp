@@ -50,8 +50,9 @@ Result<CameraSampler> camera_of(const RenderScene& scene, const RenderSettings& 
                                                                       settings.camera, cameras.size()));
 }
 
-uint64_t integrator_bytes(IntegratorKind kind, uint32_t max_tile_pixels) noexcept {
-    return row(kind).bytes(max_tile_pixels);
+uint64_t integrator_bytes(const RenderSettings& settings, uint32_t max_tile_pixels) noexcept {
+    return row(settings.integrator).bytes(max_tile_pixels) +
+           WavefrontIntegrator::aov_bytes(settings.aovs, max_tile_pixels);
 }
 
 std::unique_ptr<Integrator> make_integrator(const RenderContext& context, uint32_t max_tile_pixels) {

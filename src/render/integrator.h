@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "render/film.h"
@@ -55,9 +54,9 @@ struct RenderContext {
 class Integrator {
 public:
     virtual ~Integrator() = default;
-    /// Adds the unit's samples to `sums` (one per pixel of the tile, row by row), each pixel's in ascending order.
+    /// Adds the unit's samples to the sums of its tile, each pixel's in ascending order.
     /// False when the job was cancelled on the way; the sums are then worthless.
-    virtual bool render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept = 0;
+    virtual bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept = 0;
 };
 
 /// The camera that the settings name; `usage` when the scene has no such camera, bad_input for a degenerate one.
@@ -65,7 +64,7 @@ Result<CameraSampler> camera_of(const RenderScene& scene, const RenderSettings& 
 
 /// What settings.integrator of the context names; integrator_bytes is what one holds.
 std::unique_ptr<Integrator> make_integrator(const RenderContext& context, uint32_t max_tile_pixels);
-uint64_t integrator_bytes(IntegratorKind kind, uint32_t max_tile_pixels) noexcept;
+uint64_t integrator_bytes(const RenderSettings& settings, uint32_t max_tile_pixels) noexcept;
 
 // One file each; integrator.cpp has the table.
 std::unique_ptr<Integrator> make_direct(const RenderContext& context, uint32_t max_tile_pixels);

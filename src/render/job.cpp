@@ -49,7 +49,7 @@ public:
           settings_(settings),
           execution_(execution),
           window_(window_of(settings)),
-          film_(window_, execution.tile_size),
+          film_(window_, execution.tile_size, settings.aovs),
           context_{
               *scene_,    settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
               cancelled_, rays_},
@@ -224,7 +224,7 @@ private:
     /// A tile's share of a pass with a time limit: goes on where the last one stopped.
     bool render_part(Integrator& integrator, uint64_t tile, Counters& counters) {
         const WorkUnit work{film_.rect(tile), first_sample_, samples_};
-        std::vector<RgbSum> sums = film_.open_sums(tile);
+        TileSums sums = film_.open_sums(tile);
         if (!integrator.render(work, sums, counters)) return false;
         film_.extend(tile, work.samples, std::move(sums));
         samples_done_ += uint64_t(work.samples) * work.tile.pixels();
@@ -240,7 +240,7 @@ private:
         work.first_sample = block * kBlockSamples;
         work.samples =
             static_cast<uint32_t>(std::min<uint64_t>(kBlockSamples, settings_.samples_per_pixel - work.first_sample));
-        std::vector<RgbSum> sums(work.tile.pixels());
+        TileSums sums = film_.empty_sums(tile);
         if (!integrator.render(work, sums, counters)) return false;
         film_.commit(tile, block, work.samples, std::move(sums));
         samples_done_ += uint64_t(work.samples) * work.tile.pixels();

@@ -32,6 +32,7 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     }
     if (s.integrator == IntegratorKind::ao && s.ao_distance > 0)
         m["steradian:ao_distance"] = fmt::format("{}", s.ao_distance);
+    if (!s.aovs.empty()) m["steradian:aovs"] = names_in(s.aovs);
     m["steradian:sampler"] = name_of(s.sampler);
     m["steradian:seed"] = fmt::format("{}", s.seed);
     m["steradian:filter"] = fmt::format("{} {}", name_of(s.filter.kind), s.filter.radius);

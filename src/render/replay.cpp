@@ -50,9 +50,9 @@ Result<SampleTrace> replay(const std::shared_ptr<const RenderScene>& scene, cons
             *scene,    settings, *camera,  FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
             cancelled, rays,     &recorder};
         Counters counters;
-        RgbSum sum;
+        TileSums sums(1, {});
         const auto integrator = make_integrator(context, 1);
-        integrator->render({{x, y, x + 1, y + 1}, sample, 1}, std::span(&sum, 1), counters);
+        integrator->render({{x, y, x + 1, y + 1}, sample, 1}, sums, counters);
         if (recorder.failed()) throw std::bad_alloc();
         SampleTrace trace = std::move(recorder.trace());
         trace.x = x, trace.y = y, trace.sample = sample;

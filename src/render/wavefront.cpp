@@ -21,8 +21,15 @@ uint64_t WavefrontIntegrator::bytes(uint32_t max_tile_pixels) noexcept {
     return max_tile_pixels * sizeof(uint32_t) + capacity(max_tile_pixels) * path + kBatchShadowRays * shadow_ray;
 }
 
+uint64_t WavefrontIntegrator::aov_bytes(AovSet aovs, uint32_t max_tile_pixels) noexcept {
+    return capacity(max_tile_pixels) * FirstHits::bytes_per_path(aovs);
+}
+
 WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
-    : c_(context), shading_(context.scene.shading), capacity_(capacity(max_tile_pixels)) {
+    : c_(context),
+      shading_(context.scene.shading),
+      capacity_(capacity(max_tile_pixels)),
+      first_hits_(context, capacity(max_tile_pixels)) {
     pixels_.reserve(max_tile_pixels);
     paths_.resize(capacity_);
     active_.reserve(capacity_);
@@ -36,7 +43,7 @@ WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t 
     occluded_.resize(kBatchShadowRays);
 }
 
-bool WavefrontIntegrator::render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept {
+bool WavefrontIntegrator::render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept {
     counters_ = &counters;
     const uint32_t pixels = unit.tile.pixels();
     const uint32_t step = std::max(1u, capacity_ / pixels);
@@ -84,6 +91,7 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         const Vec2 film{static_cast<float>(path.x) + 0.5f + position.offset.x,
                         static_cast<float>(path.y) + 0.5f + position.offset.y};
         if (c_.recorder) c_.recorder->camera(film, path.weight);
+        if (first_hits_.wanted()) first_hits_.begin(i, position.offset);
         if (!c_.camera.sees(film)) continue;
         const Vec2 lens = c_.camera.has_lens() ? c_.sampler.get_2d(path.key, kLensDimension) : Vec2{};
         rays_.push_back(c_.camera.generate(film, lens));
@@ -218,18 +226,20 @@ void WavefrontIntegrator::in_slices(size_t rays, Trace trace) const noexcept {
     }
 }
 
-void WavefrontIntegrator::accumulate(uint32_t count, std::span<RgbSum> sums) noexcept {
+void WavefrontIntegrator::accumulate(uint32_t count, TileSums& sums) noexcept {
     for (uint32_t i = 0; i < count; ++i) {
         const Path& path = paths_[i];
         const Rgb l = path.radiance;
         const PixelSample sample{path.x, path.y, path.key.sample, l};
         const bool good = is_finite(l) && l.r >= 0 && l.g >= 0 && l.b >= 0;
         if (good) {
-            sums[path.pixel].add(l, path.weight);
+            sums.color[path.pixel].add(l, path.weight);
+            if (!sums.squares.empty()) sums.squares[path.pixel].add(l, path.weight);
             counters_->good(sample);
         } else {
             counters_->bad(sample);
         }
+        if (first_hits_.wanted()) first_hits_.add_to(sums, path.pixel, i, path.weight);
         if (c_.recorder) c_.recorder->finish(l, !good);
     }
 }

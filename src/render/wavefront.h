@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "render/first_hit.h"
 #include "render/integrator.h"
 #include "render/recorder.h"
 #include "shading/bsdf.h"
@@ -33,11 +34,13 @@ inline Rgb clamped(Rgb contribution, float limit) {
 class WavefrontIntegrator : public Integrator {
 public:
     WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels);
-    bool render(const WorkUnit& unit, std::span<RgbSum> sums, Counters& counters) noexcept final;
+    bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept final;
 
     /// Paths under way at a time, and what they take.
     static uint32_t capacity(uint32_t max_tile_pixels) noexcept;
     static uint64_t bytes(uint32_t max_tile_pixels) noexcept;
+    /// What AOVs take on top.
+    static uint64_t aov_bytes(AovSet aovs, uint32_t max_tile_pixels) noexcept;
 
 protected:
     struct Path {
@@ -78,6 +81,7 @@ protected:
             cone = cone.after(hit.t);
             out.footprint = footprint_of(cone, out);
         }
+        if (depth_ == 0 && first_hits_.wanted()) first_hits_.see(id, paths_[id].key, out, -ray.d);
         return out;
     }
     /// The path turns at `point`.
@@ -133,7 +137,7 @@ private:
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;
     void record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept;
-    void accumulate(uint32_t count, std::span<RgbSum> sums) noexcept;
+    void accumulate(uint32_t count, TileSums& sums) noexcept;
     template <class Trace>
     void in_slices(size_t rays, Trace trace) const noexcept;
 
@@ -149,6 +153,7 @@ private:
     std::vector<Connection> connections_;
     std::vector<uint32_t> shadow_order_;  ///< in which they are traced
     std::vector<uint8_t> occluded_;       ///< an Accel::Occlusion each
+    FirstHits first_hits_;
 };
 
 template <class Weight>

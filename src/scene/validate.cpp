@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/names.h"
 #include "base/text.h"
 #include "math/ray.h"
 #include "math/transform.h"
@@ -416,6 +417,11 @@ Status validate(const RenderSettings& s) {
     if (!(s.filter.radius >= float(kMinFilterRadius) && s.filter.radius <= float(kMaxFilterRadius)))
         return usage(fmt::format("a filter radius of {}: expected {} to {} pixels", s.filter.radius, kMinFilterRadius,
                                  kMaxFilterRadius));
+    if (!s.aovs.empty() && s.integrator != IntegratorKind::path && s.integrator != IntegratorKind::direct)
+        return make_error(
+            ErrorCode::usage,
+            fmt::format("the integrator {} has no AOVs, which come with path and direct", name_of(s.integrator)),
+            "choose one of these, or no AOVs");
     return Ok{};
 }
 

@@ -20,8 +20,8 @@ SceneText lit_floor() { return floor_scene().light(point_light(kLight, 10)).mate
 
 void add_shadows(std::vector<Case>& out) {
     const auto lid = [](double height, const char* material) { return ground({0, height, 0}, 0.2, 0.2, material); };
-    out.push_back(whole("opacity_shadow", "(1 - α) ρ/π I / d²", lit_floor().object(lid(1.5, "quarter")),
-                        0.75 * overhead()));
+    out.push_back(
+        whole("opacity_shadow", "(1 - α) ρ/π I / d²", lit_floor().object(lid(1.5, "quarter")), 0.75 * overhead()));
     SceneText two = lit_floor().material("half", sheet(0.5)).object(lid(1.5, "quarter")).object(lid(1, "half"));
     out.push_back(whole("opacity_shadow_two_sheets", "(1 - α₁) (1 - α₂) ρ/π I / d²", two, 0.375 * overhead()));
     out.push_back(whole("opacity_shadow_sphere", "(1 - α)² ρ/π I / d²: the ray crosses it twice",
@@ -35,28 +35,27 @@ void add_shadows(std::vector<Case>& out) {
                         SceneText(pattern).object(ground({0.1, 1.5, 0.1}, 0.2, 0.2, "squares")), 0.0));
     out.push_back(whole("opacity_texture_hole", "ρ/π I / d²: the texture is 0 where the ray passes",
                         SceneText(pattern).object(ground({0.1, 1.5, -0.1}, 0.2, 0.2, "squares")), overhead()));
-    SceneText mixed = lit_floor().material("mixed", Object("mix").raw("materials", R"(["quarter", "black"])").set(
-                                                        "weight", 0.6));
-    out.push_back(whole("opacity_shadow_mix", "(1 - 0.6 - 0.4 α) ρ/π I / d²", mixed.object(lid(1.5, "mixed")),
-                        0.3 * overhead()));
+    SceneText mixed =
+        lit_floor().material("mixed", Object("mix").raw("materials", R"(["quarter", "black"])").set("weight", 0.6));
+    out.push_back(
+        whole("opacity_shadow_mix", "(1 - 0.6 - 0.4 α) ρ/π I / d²", mixed.object(lid(1.5, "mixed")), 0.3 * overhead()));
 }
 
 void add_emitters(std::vector<Case>& out) {
     SceneText seen = empty_scene({0.25, 0.25, 3}, {0.1, 0.2, 0}).material("quarter", sheet(0.25));
     seen.integrator("path").depth(0);
     const Object lamp = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, "black").set("light", emission(kGlow));
-    out.push_back(noisy(whole("opacity_seen_through", "(1 - α)² L: to pass is no bounce",
-                              SceneText(seen).object(lamp).object(sphere({0.1, 0.2, 1}, 0.5, "quarter")),
-                              kGlow * 0.5625)));
+    out.push_back(
+        noisy(whole("opacity_seen_through", "(1 - α)² L: to pass is no bounce",
+                    SceneText(seen).object(lamp).object(sphere({0.1, 0.2, 1}, 0.5, "quarter")), kGlow * 0.5625)));
     const Object thin = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, "quarter").set("light", emission(kGlow));
     out.push_back(noisy(whole("opacity_emitter_seen", "α L + (1 - α) of the sky",
-                              SceneText(seen).object(thin).light(environment(0.5)),
-                              kGlow * 0.25 + Color(0.5) * 0.75)));
+                              SceneText(seen).object(thin).light(environment(0.5)), kGlow * 0.25 + Color(0.5) * 0.75)));
     for (const char* integrator : {"direct", "path"}) {
         SceneText lit = empty_scene({1.5, 0.5, 0.5}, {0, 0, 2}).material("quarter", sheet(0.25));
         lit.integrator(integrator).object(rectangle({0, 0, 2}, {-4, 0, 0}, {0, 4, 0}, "floor"));
-        out.push_back(noisy(whole(std::string("opacity_emitter_lights_") + integrator, "α ρ L F", SceneText(lit).object(thin),
-                                  kGlow * (0.25 * kRho * kSquare))));
+        out.push_back(noisy(whole(std::string("opacity_emitter_lights_") + integrator, "α ρ L F",
+                                  SceneText(lit).object(thin), kGlow * (0.25 * kRho * kSquare))));
     }
 }
 

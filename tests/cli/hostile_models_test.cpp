@@ -1,5 +1,5 @@
-// What glTF files that want to take memory or time are allowed: at most 512 MiB and 2 s of processor time, one line that
-// names the file and the place, and no output.
+// What glTF files that want to take memory or time are allowed: at most 512 MiB and 2 s of processor time, one line
+// that names the file and the place, and no output.
 #include <gtest/gtest.h>
 
 #include "gltf/gltf_builder.h"
@@ -38,10 +38,9 @@ protected:
                 const std::string comma = n ? "," : "", number = std::to_string(n);
                 images += comma + "{\"bufferView\": " + std::to_string(view) + "}";
                 textures += comma + "{\"source\": " + number + "}";
-                materials +=
-                    comma + "{\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": " + number + "}}}";
-                primitives += comma + "{\"attributes\": {\"POSITION\": " + std::to_string(p) +
-                              "}, \"material\": " + number + "}";
+                materials += comma + "{\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": " + number + "}}}";
+                primitives +=
+                    comma + "{\"attributes\": {\"POSITION\": " + std::to_string(p) + "}, \"material\": " + number + "}";
             }
         }
         return b.binary("\"images\": [" + images + "], \"textures\": [" + textures + "], \"materials\": [" + materials +
@@ -67,8 +66,8 @@ TEST_F(HostileModels, ManyPicturesOfOneColour) {
     const std::vector<std::string> smaller(
         30, png_file(4000, 1000, 8, 2, std::string((size_t(4000) * 3 + 1) * 1000, '\0')));
     expect_cheap(with_images(smaller), "MiB");
-    const Outcome more = steradian(
-        {"render", "model.glb", "--gltf-memory", "1024", "--spp", "1", "--size", "8x8", "-q", "-o", "a.png"});
+    const Outcome more =
+        steradian({"render", "model.glb", "--gltf-memory", "1024", "--spp", "1", "--size", "8x8", "-q", "-o", "a.png"});
     EXPECT_EQ(more.code, 0) << more.err;
 }
 
@@ -80,8 +79,9 @@ TEST_F(HostileModels, ThingsThatAreNotThere) {
     };
     expect_cheap(zeros("4294967295"), "(/meshes/0/primitives/0)");
     expect_cheap(zeros("18000000"), "", true);  // 288 MB: the most that is allowed is cheap enough
-    std::string buffer = "\"buffers\": [{\"byteLength\": 9007199254740992}], \"bufferViews\": [{\"buffer\": 0, "
-                         "\"byteLength\": 9007199254740992}], \"accessors\": [{\"bufferView\": 0, ";
+    std::string buffer =
+        "\"buffers\": [{\"byteLength\": 9007199254740992}], \"bufferViews\": [{\"buffer\": 0, "
+        "\"byteLength\": 9007199254740992}], \"accessors\": [{\"bufferView\": 0, ";
     expect_cheap("{\"asset\": {\"version\": \"2.0\"}, " + buffer + vec3 + "3}], " + one_mesh(0) + "}", "(/buffers/0)");
     std::string claims = zeros("3");
     const uint32_t most = 0xffffffffu;
@@ -97,8 +97,8 @@ TEST_F(HostileModels, OneThingUsedOverAndOver) {
         accessors += comma + "{\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3000000}";
         primitives += comma + "{\"attributes\": {\"POSITION\": " + std::to_string(i) + "}}";
     }
-    expect_cheap("{\"asset\": {\"version\": \"2.0\"}, \"accessors\": [" + accessors + "], \"meshes\": [{\"primitives\": [" +
-                     primitives + "]}], \"nodes\": [{\"mesh\": 0}]}",
+    expect_cheap("{\"asset\": {\"version\": \"2.0\"}, \"accessors\": [" + accessors +
+                     "], \"meshes\": [{\"primitives\": [" + primitives + "]}], \"nodes\": [{\"mesh\": 0}]}",
                  "(/accessors/");
     // 30 levels of nodes that each name the next one twice would be 2^30 instances.
     GltfBuilder b;
@@ -111,8 +111,8 @@ TEST_F(HostileModels, OneThingUsedOverAndOver) {
                  "(/nodes/0/children/1)");
     // Instances by the billion, of accessors without data.
     GltfBuilder c;
-    const int triangle = c.floats("VEC3", 3, kTriangle), t = c.raw_accessor(
-        "\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4000000000");
+    const int triangle = c.floats("VEC3", 3, kTriangle),
+              t = c.raw_accessor("\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4000000000");
     expect_cheap(c.binary("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(triangle) +
                           "}}]}], \"nodes\": [{\"mesh\": 0, \"extensions\": {\"EXT_mesh_gpu_instancing\": "
                           "{\"attributes\": {\"TRANSLATION\": " +
@@ -133,8 +133,8 @@ TEST_F(HostileModels, OneFileNamedManyTimesIsReadOnce) {
         const std::string comma = i ? "," : "", number = std::to_string(i);
         buffers += comma + "{\"byteLength\": 36, \"uri\": \"./large.bin\"}";
         views += comma + "{\"buffer\": " + number + ", \"byteLength\": 36}";
-        accessors += comma + "{\"bufferView\": " + number +
-                     ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3}";
+        accessors +=
+            comma + "{\"bufferView\": " + number + ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3}";
         primitives += comma + "{\"attributes\": {\"POSITION\": " + number + "}}";
     }
     spit(folder_.file("large.bin"), std::string(20'000'000, '\0'));

@@ -37,6 +37,44 @@ TEST_F(RenderCommand, WithoutOutputItWritesAPngNamedLikeTheScene) {
     expect_files({"scene.png"});
 }
 
+TEST_F(RenderCommand, AovsGoToTheExrFileAndColourToAll) {
+    const Outcome plain = steradian({"render", "scene.json", "-o", "plain.png", "--json"});
+    const Outcome o =
+        steradian({"render", "scene.json", "--aovs", "normal,depth", "-o", "a.exr", "-o", "a.png", "--json"});
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(o.err.find("warning"), std::string::npos) << o.err;
+    const auto image = read_image(folder_.file("a.exr"));
+    ASSERT_TRUE(image.ok()) << image.error().str();
+    EXPECT_EQ(image->channels, (std::vector<std::string>{"R", "G", "B", "Z", "N.X", "N.Y", "N.Z"}));
+    EXPECT_EQ(image_hash(*image), field(o.out, "hash"));
+    EXPECT_EQ(field(o.out, "color_hash"), field(plain.out, "hash"));
+    EXPECT_EQ(image_hash(*read_image(folder_.file("a.png"))), image_hash(*read_image(folder_.file("plain.png"))));
+    expect_files({"a.exr", "a.png", "plain.png"});
+    const Outcome info = steradian({"info", "a.exr"});
+    EXPECT_NE(info.out.find("N.X"), std::string::npos) << info.out;
+    const Outcome converted = steradian({"convert", "a.exr", "b.png"});
+    EXPECT_EQ(converted.code, 0);
+    EXPECT_NE(converted.err.find("N.X"), std::string::npos) << converted.err;
+    EXPECT_EQ(steradian({"diff", "a.exr", "a.exr"}).code, 0);
+}
+
+TEST_F(RenderCommand, AovsWithoutAnExrFileAreRefused) {
+    for (const std::vector<std::string>& output : {std::vector<std::string>{"-o", "b.png"}, {"-o", "b.pfm"}}) {
+        std::vector<std::string> arguments{"render", "scene.json", "--aovs", "all"};
+        arguments.insert(arguments.end(), output.begin(), output.end());
+        const Outcome o = steradian(arguments);
+        EXPECT_EQ(o.code, 2);
+        EXPECT_NE(o.err.find("need an EXR file"), std::string::npos) << o.err;
+    }
+    const Outcome unknown = steradian({"render", "scene.json", "--aovs", "depth,normals"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("'normal'"), std::string::npos) << unknown.err;
+    EXPECT_EQ(steradian({"render", "scene.json", "--aovs", "all", "--integrator", "ao"}).code, 2);
+    // The default is a file that can hold them.
+    EXPECT_EQ(steradian({"render", "scene.json", "--aovs", "uv", "-q"}).code, 0);
+    expect_files({"scene.exr"});
+}
+
 TEST_F(RenderCommand, ATimeLimitGivesTheFileOfItsNumberOfSamples) {
     // The scene asks for a few samples only; time is what counts where it is given.
     const Outcome timed = steradian({"render", "scene.json", "--time-limit", "0.3s", "-o", "a.exr", "--json"});

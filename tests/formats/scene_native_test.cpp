@@ -50,6 +50,16 @@ TEST(NativeScene, RenderAndFilm) {
     EXPECT_EQ(s.crop, (Crop{10, 20, 640, 30}));
 }
 
+TEST(NativeScene, Aovs) {
+    EXPECT_TRUE(load_good(scene_with("\"film\": {}")).settings.aovs.empty());
+    EXPECT_EQ(load_good(scene_with(R"("film": {"aovs": "all"})")).settings.aovs, AovSet::all());
+    EXPECT_EQ(load_good(scene_with(R"("film": {"aovs": ["normal", "depth", "normal"]})")).settings.aovs,
+              (AovSet{Aov::depth, Aov::normal}));
+    expect_error(scene_with(R"("film": {"aovs": ["depth", §"normals"]})"), "normals", "normal");
+    expect_error(scene_with(R"("film": {"aovs": §"some"})"), "some", "all");
+    expect_error(scene_with(R"("film": {"aovs": §7})"), "'aovs'");
+}
+
 TEST(NativeScene, FiltersHaveTheirOwnDefaultRadius) {
     const std::pair<std::string, Filter> cases[] = {{"box", {FilterKind::box, 0.5f}},
                                                     {"tent", {FilterKind::tent, 1}},

@@ -110,6 +110,8 @@ TEST_F(Schema, ListsTheSameWords) {
     check(property("render", "light_choice"), names_of<LightChoice>());
     check(property("render", "sampler"), names_of<SamplerKind>());
     check(property("filter", "type"), names_of<FilterKind>());
+    const Value list = *++member(property("film", "aovs"), "oneOf")->elements().begin();
+    check(*member(list, "items"), names_of<Aov>());
     check(property("fisheye_camera", "projection"), kFisheyeProjections);
     check(property("image_texture", "filter"), kTextureFilters);
     check(property("conductor_material", "metal"), metal_names());

@@ -129,9 +129,8 @@ TEST(GltfHostile, PositionsThatAreNotFiniteAreDroppedWithACount) {
 // --- Offsets and counts that lie ---
 
 std::string with_view(const std::string& view, const std::string& buffer = "\"byteLength\": 36") {
-    return "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{" + buffer +
-           ", \"uri\": \"data:;base64," + base64(std::string(36, '\1')) + "\"}], \"bufferViews\": [{\"buffer\": 0, " +
-           view +
+    return "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{" + buffer + ", \"uri\": \"data:;base64," +
+           base64(std::string(36, '\1')) + "\"}], \"bufferViews\": [{\"buffer\": 0, " + view +
            "}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}], " +
            one_mesh(0) + "}";
 }
@@ -143,8 +142,8 @@ TEST(GltfHostile, ViewsThatLeaveTheirBuffer) {
     expect_refused(with_view("\"byteOffset\": 4294967295, \"byteLength\": 36"), "/bufferViews/0", "4294967331");
     expect_refused(with_view("\"byteOffset\": 9007199254740992, \"byteLength\": 9007199254740992"), "/bufferViews/0",
                    "buffer with 36");
-    expect_refused(with_view("\"byteOffset\": 18446744073709551580, \"byteLength\": 36"),
-                   "/bufferViews/0/byteOffset", "whole number");
+    expect_refused(with_view("\"byteOffset\": 18446744073709551580, \"byteLength\": 36"), "/bufferViews/0/byteOffset",
+                   "whole number");
     expect_refused(with_view("\"byteLength\": 18446744073709551652"), "/bufferViews/0/byteLength", "whole number");
     expect_refused(with_view("\"byteLength\": 0"), "/bufferViews/0/byteLength", "whole number");
     expect_refused(with_view("\"byteLength\": -1"), "/bufferViews/0/byteLength", "whole number");
@@ -161,8 +160,8 @@ TEST(GltfHostile, OneHugeObjectThatManyReferToIsReadOnce) {
     for (int i = 0; i < kKeys; ++i) junk += "\"k" + std::to_string(i) + "\": 0, ";
     for (int i = 1; i <= kPrimitives; ++i) {
         accessors += ", {\"componentType\": 5121, \"count\": 3, \"type\": \"SCALAR\"}";
-        primitives += std::string(i > 1 ? "," : "") + "{\"attributes\": {\"POSITION\": 0}, \"indices\": " +
-                      std::to_string(i) + "}";
+        primitives += std::string(i > 1 ? "," : "") +
+                      "{\"attributes\": {\"POSITION\": 0}, \"indices\": " + std::to_string(i) + "}";
     }
     const std::string text =
         "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 36, \"uri\": \"data:;base64," +
@@ -224,15 +223,18 @@ TEST_F(GltfSpecialFiles, AsBuffersAndImages) {
 
 TEST_F(GltfSpecialFiles, NamesOfEveryKind) {
     const std::string buffer(reinterpret_cast<const char*>(kTriangle.data()), 36);
-    const std::pair<const char*, const char*> names[] = {
-        {"a b.bin", "a%20b.bin"}, {"-o.bin", "-o.bin"}, {"\xf0\x9f\x90\x87.bin", "%F0%9F%90%87.bin"}, {"100%.bin", "100%25.bin"}};
+    const std::pair<const char*, const char*> names[] = {{"a b.bin", "a%20b.bin"},
+                                                         {"-o.bin", "-o.bin"},
+                                                         {"\xf0\x9f\x90\x87.bin", "%F0%9F%90%87.bin"},
+                                                         {"100%.bin", "100%25.bin"}};
     for (const auto& [name, uri] : names) {
         spit(folder_.file(name), buffer);
         spit(folder_.file("n.gltf"), with_uri(uri));
         const auto loaded = load_scene(folder_.file("n.gltf"));
         EXPECT_TRUE(loaded.ok()) << loaded.error().str();
     }
-    for (const std::string& uri : {std::string("C:\\\\x.bin"), std::string("\\\\\\\\host\\\\x"), std::string(4096, 'x'), std::string("%00")}) {
+    for (const std::string& uri :
+         {std::string("C:\\\\x.bin"), std::string("\\\\\\\\host\\\\x"), std::string(4096, 'x'), std::string("%00")}) {
         spit(folder_.file("n.gltf"), with_uri(uri));
         const auto loaded = load_scene(folder_.file("n.gltf"));
         ASSERT_FALSE(loaded.ok()) << uri;

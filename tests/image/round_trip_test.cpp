@@ -102,6 +102,51 @@ TEST(RoundTrip, HalfExrRoundsToTheNearest) {
     }
 }
 
+TEST(RoundTrip, ChannelsHaveTypesOfTheirOwn) {
+    Image image = sample_image(3, 1, {"R", "Z", "id"});
+    image.pixels = {1.0f / 3, 1e10f, 16777216, 70000, 1.0f / 3, 0, 2, -0.0f, 4294967040.0f};
+    image.types = {ChannelType::by_options, ChannelType::single, ChannelType::uint32};
+    Diagnostics diagnostics;
+    const std::string file = encoded(image, "a.exr", {.exr = ExrPrecision::half}, &diagnostics);
+    const Image back = decoded(file);
+    EXPECT_NEAR(back.pixels[0], 1.0f / 3, 1e-3f);
+    EXPECT_NE(back.pixels[0], 1.0f / 3);
+    EXPECT_EQ(back.pixels[3], 65504.0f);
+    for (const size_t i : {1u, 2u, 4u, 5u, 7u, 8u}) EXPECT_EQ(back.pixels[i], image.pixels[i]);
+    EXPECT_EQ(diagnostics.warnings().size(), 1u);
+    // What was whole stays whole when the file is written again, in half precision or not.
+    EXPECT_EQ(back.types[2], ChannelType::uint32);
+    EXPECT_NE(back.types[0], ChannelType::uint32);
+    const Image again = decoded(encoded(back, "b.exr", {.exr = ExrPrecision::half}));
+    EXPECT_EQ(again.pixels[8], image.pixels[8]);
+}
+
+TEST(RoundTrip, WholeNumbersAreClampedAndCounted) {
+    Image image = sample_image(5, 1, {"id"});
+    image.types = {ChannelType::uint32};
+    image.pixels = {-1, 0x1p32f, std::numeric_limits<float>::quiet_NaN(), 7, kInf};
+    Diagnostics diagnostics;
+    const Image back = decoded(encoded(image, "a.exr", {}, &diagnostics));
+    EXPECT_EQ(back.pixels, (std::vector<float>{0, 0x1p32f, 0, 7, 0x1p32f}));  // 2³² - 1 as a float
+    ASSERT_EQ(diagnostics.warnings().size(), 1u);
+    EXPECT_EQ(diagnostics.warnings()[0].count, 4u);
+}
+
+TEST(ColorChannels, AreRedGreenAndBlueAlone) {
+    Image image = sample_image(4, 3, {"Z", "B", "A", "R", "N.X", "G"});
+    image.metadata = {{"a", "b"}};
+    const Image color = color_channels(image);
+    EXPECT_EQ(color.channels, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_EQ(color.metadata, image.metadata);
+    ASSERT_EQ(color.pixels.size(), 36u);
+    for (size_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(color.pixels[3 * i], image.pixels[6 * i + 3]);
+        EXPECT_EQ(color.pixels[3 * i + 1], image.pixels[6 * i + 5]);
+        EXPECT_EQ(color.pixels[3 * i + 2], image.pixels[6 * i + 1]);
+    }
+    EXPECT_TRUE(color_channels(sample_image(4, 3, {"R", "G", "X"})).pixels.empty());
+}
+
 TEST(RoundTrip, HalfExrClampsAndCounts) {
     Image image = sample_image(4, 1, {"Y"});
     image.pixels = {65504.0f, 65505.0f, -1e30f, kInf};

@@ -11,9 +11,12 @@
 namespace steradian {
 namespace {
 
-std::vector<RgbSum> sums_of(size_t pixels, double value) {
-    return std::vector<RgbSum>(pixels, RgbSum{value, 2 * value, 3 * value});
+TileSums sums_of(size_t pixels, RgbSum value) {
+    TileSums out(pixels, {});
+    out.color.assign(pixels, value);
+    return out;
 }
+TileSums sums_of(size_t pixels, double value) { return sums_of(pixels, RgbSum{value, 2 * value, 3 * value}); }
 
 TEST(Film, TilesCoverTheWindowOnceOnAnAbsoluteGrid) {
     for (const uint32_t size : {1u, 7u, 16u, 256u}) {
@@ -73,12 +76,12 @@ TEST(Film, ABlockInPartsIsTheBlock) {
         for (size_t i = 0; i < 5; ++i) {
             const uint32_t samples = i == 4 ? (block == 2 ? 1 : kBlockSamples - done) : 9;
             sum += RgbSum{parts[i], 2 * parts[i], 3 * parts[i]};
-            std::vector<RgbSum> sums = in_parts.open_sums(0);
-            for (RgbSum& s : sums) s += RgbSum{parts[i], 2 * parts[i], 3 * parts[i]};
+            TileSums sums = in_parts.open_sums(0);
+            for (RgbSum& s : sums.color) s += RgbSum{parts[i], 2 * parts[i], 3 * parts[i]};
             in_parts.extend(0, samples, std::move(sums));
             done += samples;
         }
-        whole.commit(0, block, done, std::vector<RgbSum>(2, sum));
+        whole.commit(0, block, done, sums_of(2, sum));
         EXPECT_EQ(in_parts.samples_per_pixel().max, whole.samples_per_pixel().max);
         EXPECT_EQ(in_parts.develop().pixels, whole.develop().pixels);
     }
@@ -104,7 +107,7 @@ TEST(Film, SumsStayExactAtManySamples) {
     for (uint32_t i = 0; i < kBlockSamples; ++i)
         block.add({values[i % 4], values[(i + 1) % 4], values[(i + 2) % 4]}, 1.0f);
     Film film({0, 0, 1, 1}, 1);
-    for (uint64_t b = 0; b < samples / kBlockSamples; ++b) film.commit(0, b, kBlockSamples, {block});
+    for (uint64_t b = 0; b < samples / kBlockSamples; ++b) film.commit(0, b, kBlockSamples, sums_of(1, block));
     const double expected = (double(values[0]) + double(values[1]) + double(values[2]) + double(values[3])) / 4;
     EXPECT_EQ(film.samples_per_pixel().min, samples);
     const Image image = film.develop();

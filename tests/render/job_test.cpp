@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/parallel.h"
+#include "render_support.h"
 #include "steradian/render.h"
 #include "support/support.h"
 #include "test_scenes.h"
@@ -28,21 +29,8 @@ RenderSettings small_settings() {
     return s;
 }
 
-std::shared_ptr<const RenderScene> prepared(Scene scene, const Execution& execution = {}) {
-    Diagnostics diagnostics;
-    auto result = prepare(std::move(scene), execution, diagnostics);
-    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().str());
-    return result.ok() ? *result : nullptr;
-}
-
-RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSettings& settings,
-                 const Execution& execution = {}) {
-    auto job = RenderJob::start(scene, settings, execution);
-    EXPECT_TRUE(job.ok()) << (job.ok() ? "" : job.error().str());
-    auto result = (*job)->take();
-    EXPECT_TRUE(result.ok());
-    return std::move(*result);
-}
+using test::prepared;
+using test::run;
 
 TEST(Job, TheSameBitsOnAnyNumberOfThreadsTilesAndBuilders) {
     const auto scene = prepared(test::everything_scene());

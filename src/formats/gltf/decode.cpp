@@ -73,7 +73,8 @@ uint64_t Images::claim(const Image& image) {
     const uint64_t value = header->value_bytes, whole = header->texels() * header->channels * value;
     uint64_t kept = 0;
     for (size_t plane = 0; plane < image.planes.size(); ++plane)
-        if (image.planes[plane]) kept += header->texels() * value * (plane == 0 ? min_of<uint64_t>(header->channels, 3) : 1);
+        if (image.planes[plane])
+            kept += header->texels() * value * (plane == 0 ? min_of<uint64_t>(header->channels, 3) : 1);
     context_.budget.take(max_of(whole, kept), context_.source, image.offset);
     return whole;
 }

@@ -17,7 +17,7 @@ inline constexpr Key kScene[] = {"$schema", "version",  "comment",   "render", "
 inline constexpr Key kRender[] = {"integrator", "max_depth",      "spp",          "sampler",        "seed",
                                   "camera",     "light_sampling", "light_choice", "roulette_depth", "clamp",
                                   "ao_distance"};
-inline constexpr Key kFilm[] = {"resolution", "filter", "crop"};
+inline constexpr Key kFilm[] = {"resolution", "filter", "crop", "aovs"};
 inline constexpr Key kFilter[] = {"type", "radius"};
 inline constexpr Key kPerspectiveCamera[] = {
     "type",           "position",        "look_at",          "up", "vertical_fov", "aperture_radius",

@@ -50,7 +50,22 @@ void NativeLoader::read_film(Value value) {
             source_.fail(crop->offset(), "'crop' has no pixels",
                          "it is [x0, y0, x1, y1] from the top left corner, with x0 < x1 and y0 < y1");
     }
+    if (const auto aovs = film.find("aovs")) settings.aovs = read_aovs(*aovs);
     film.finish();
+}
+
+/// A list of names, or "all".
+AovSet NativeLoader::read_aovs(Value value) const {
+    static constexpr std::string_view kAll[] = {"all"};
+    if (value.is(Kind::string)) {
+        json::read_choice(source_, value, "'aovs'", kAll);
+        return AovSet::all();
+    }
+    json::expect_array(source_, value, "'aovs'", {});
+    AovSet out;
+    for (const Value name : value.elements())
+        out.add(static_cast<Aov>(json::read_choice(source_, name, "an element of 'aovs'", names_of<Aov>())));
+    return out;
 }
 
 void NativeLoader::read_cameras(ObjectReader& reader) {

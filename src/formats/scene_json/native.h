@@ -19,6 +19,7 @@ private:
     // native.cpp
     void read_version(Value version) const;
     void read_film(Value value);
+    AovSet read_aovs(Value value) const;
     void read_cameras(ObjectReader& scene);
     void read_camera(Value value, std::string name);
     void read_render(Value value);

@@ -1,0 +1,82 @@
+#include "render/aov.h"
+
+#include <algorithm>
+
+#include "base/names.h"
+#include "image/codec.h"
+
+namespace steradian {
+namespace {
+
+using Sums = PixelSums;
+
+/// Of what was averaged over its own weights; 0 where those of a filter with negative lobes happen to cancel.
+float feature(double sum, const Sums& s) {
+    return s.features.weight != 0 ? static_cast<float>(sum / s.features.weight) : 0;
+}
+
+/// Of the mean of `n` independent samples: their variance, Σ(X - mean)² / (n - 1), over n. 0 for a single one.
+float variance(double sum, double squares, double n) {
+    if (n < 2) return 0;
+    return static_cast<float>(max_of(squares - sum / n * sum, 0.0) / (n - 1) / n);
+}
+
+struct Row {
+    Aov aov;
+    const char* name;
+    ChannelType type;
+    float (*value)(const Sums&, double samples);
+};
+
+constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::single, kWhole = ChannelType::uint32;
+
+/// docs/aovs.md has them with their reasons.
+constexpr Row kRows[] = {
+    {Aov::alpha, "A", kAny, [](const Sums& s, double) { return feature(s.features.alpha, s); }},
+    {Aov::albedo, "albedo.R", kAny, [](const Sums& s, double) { return feature(s.features.albedo.r, s); }},
+    {Aov::albedo, "albedo.G", kAny, [](const Sums& s, double) { return feature(s.features.albedo.g, s); }},
+    {Aov::albedo, "albedo.B", kAny, [](const Sums& s, double) { return feature(s.features.albedo.b, s); }},
+    {Aov::normal, "N.X", kAny, [](const Sums& s, double) { return feature(s.features.normal.r, s); }},
+    {Aov::normal, "N.Y", kAny, [](const Sums& s, double) { return feature(s.features.normal.g, s); }},
+    {Aov::normal, "N.Z", kAny, [](const Sums& s, double) { return feature(s.features.normal.b, s); }},
+    {Aov::depth, "Z", kSingle, [](const Sums& s, double) { return s.centre.depth; }},
+    {Aov::position, "P.X", kSingle, [](const Sums& s, double) { return s.centre.position.x; }},
+    {Aov::position, "P.Y", kSingle, [](const Sums& s, double) { return s.centre.position.y; }},
+    {Aov::position, "P.Z", kSingle, [](const Sums& s, double) { return s.centre.position.z; }},
+    {Aov::uv, "uv.U", kSingle, [](const Sums& s, double) { return s.centre.uv.x; }},
+    {Aov::uv, "uv.V", kSingle, [](const Sums& s, double) { return s.centre.uv.y; }},
+    {Aov::object, "object.id", kWhole, [](const Sums& s, double) { return static_cast<float>(s.centre.object); }},
+    {Aov::material, "material.id", kWhole, [](const Sums& s, double) { return static_cast<float>(s.centre.material); }},
+    {Aov::primitive, "primitive.id", kWhole,
+     [](const Sums& s, double) { return static_cast<float>(s.centre.primitive); }},
+    {Aov::variance, "variance.R", kSingle, [](const Sums& s, double n) { return variance(s.color.r, s.squares.r, n); }},
+    {Aov::variance, "variance.G", kSingle, [](const Sums& s, double n) { return variance(s.color.g, s.squares.g, n); }},
+    {Aov::variance, "variance.B", kSingle, [](const Sums& s, double n) { return variance(s.color.b, s.squares.b, n); }},
+    {Aov::samples, "samples.count", kWhole, [](const Sums&, double n) { return static_cast<float>(n); }},
+};
+
+}  // namespace
+
+PictureChannels::PictureChannels(AovSet aovs) {
+    channels_.push_back({"R", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.r / n); }});
+    channels_.push_back({"G", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.g / n); }});
+    channels_.push_back({"B", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.b / n); }});
+    for (const Row& row : kRows)
+        if (aovs.has(row.aov)) channels_.push_back({row.name, row.type, row.value});
+    std::sort(channels_.begin(), channels_.end(),
+              [](const Channel& a, const Channel& b) { return codec::channel_before(a.name, b.name); });
+}
+
+void PictureChannels::describe(Image& image) const {
+    const bool plain = std::all_of(channels_.begin(), channels_.end(), [](const Channel& c) { return c.type == kAny; });
+    for (const Channel& c : channels_) {
+        image.channels.push_back(c.name);
+        if (!plain) image.types.push_back(c.type);
+    }
+}
+
+void PictureChannels::develop(const PixelSums& sums, uint64_t samples, float* out) const {
+    for (const Channel& c : channels_) *out++ = c.value(sums, static_cast<double>(samples));
+}
+
+}  // namespace steradian

@@ -1,0 +1,33 @@
+// From sums to the channels of a picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/sums.h"
+#include "steradian/image.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+/// The channels of a picture with these AOVs: colour first, all in the order in which files list them.
+class PictureChannels {
+public:
+    explicit PictureChannels(AovSet aovs);
+
+    size_t count() const noexcept { return channels_.size(); }
+    /// Names and types.
+    void describe(Image& image) const;
+    /// The values of a pixel, count() of them, from its sums over `samples` samples.
+    void develop(const PixelSums& sums, uint64_t samples, float* out) const;
+
+private:
+    struct Channel {
+        std::string name;
+        ChannelType type = ChannelType::by_options;
+        float (*value)(const PixelSums& sums, double samples) = nullptr;
+    };
+    std::vector<Channel> channels_;
+};
+
+}  // namespace steradian

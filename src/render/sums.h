@@ -1,0 +1,129 @@
+// What the film keeps of a tile: the sums of the colour, and those of the AOVs that were asked for. All of them are
+// added up in the order of the samples and folded block by block, so none depends on who computed what when.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "math/vector.h"
+#include "steradian/settings.h"
+
+namespace steradian {
+
+struct RgbSum {
+    double r = 0, g = 0, b = 0;
+    void add(Rgb value, float weight) {
+        r += double(value.r) * double(weight);
+        g += double(value.g) * double(weight);
+        b += double(value.b) * double(weight);
+    }
+    RgbSum& operator+=(const RgbSum& other) {
+        r += other.r, g += other.g, b += other.b;
+        return *this;
+    }
+};
+
+/// Of samples X = filter weight × radiance, X² per channel.
+struct SquareSum : RgbSum {
+    void add(Rgb value, float weight) {
+        const auto square = [&](float v) { return double(v) * double(weight) * (double(v) * double(weight)); };
+        r += square(value.r), g += square(value.g), b += square(value.b);
+    }
+};
+
+/// What camera rays have met first, averaged through the filter over its own weights: where all samples agree, the mean
+/// is what they agree on, with any filter.
+struct FeatureSum {
+    double weight = 0, alpha = 0;
+    RgbSum albedo, normal;
+    FeatureSum& operator+=(const FeatureSum& other) {
+        weight += other.weight, alpha += other.alpha;
+        albedo += other.albedo, normal += other.normal;
+        return *this;
+    }
+};
+
+/// What makes no sense as an average is taken from one sample: the one nearest to the pixel's centre, of equally near
+/// ones the first.
+struct CentreSample {
+    float distance2 = std::numeric_limits<float>::infinity();  ///< pixels²; infinite: no sample yet
+    float depth = kFarDepth;
+    Vec3 position;
+    Vec2 uv;
+    uint32_t object = 0, material = 0, primitive = 0;  ///< from 1; 0: nothing was met
+
+    /// Where nothing was met: beyond everything, in metres. The number that Blender writes.
+    static constexpr float kFarDepth = 1e10f;
+
+    CentreSample& operator+=(const CentreSample& later) {
+        if (later.distance2 < distance2) *this = later;
+        return *this;
+    }
+};
+
+/// Which sums a set of AOVs needs.
+struct SumKinds {
+    bool features = false, squares = false, centres = false;
+
+    SumKinds() = default;
+    explicit SumKinds(AovSet aovs)
+        : features(aovs.has_any({Aov::alpha, Aov::albedo, Aov::normal})),
+          squares(aovs.has(Aov::variance)),
+          centres(aovs.has_any({Aov::depth, Aov::position, Aov::uv, Aov::object, Aov::material, Aov::primitive})) {}
+    /// Whether anything is to be known of the surfaces that camera rays meet.
+    bool first_hits() const { return features || centres; }
+    uint64_t bytes_per_pixel() const {
+        return sizeof(RgbSum) + features * sizeof(FeatureSum) + squares * sizeof(SquareSum) +
+               centres * sizeof(CentreSample);
+    }
+};
+
+/// One pixel's share of TileSums.
+struct PixelSums {
+    RgbSum color;
+    FeatureSum features;
+    SquareSum squares;
+    CentreSample centre;
+};
+
+/// Each array has an element for each pixel of the tile, row by row, or none where nobody asked.
+struct TileSums {
+    std::vector<RgbSum> color;
+    std::vector<FeatureSum> features;
+    std::vector<SquareSum> squares;
+    std::vector<CentreSample> centres;
+
+    TileSums() = default;
+    TileSums(size_t pixels, SumKinds kinds)
+        : color(pixels),
+          features(kinds.features ? pixels : 0),
+          squares(kinds.squares ? pixels : 0),
+          centres(kinds.centres ? pixels : 0) {}
+
+    /// Adds what comes after it in the order of the samples.
+    TileSums& operator+=(const TileSums& later) {
+        const auto fold = [](auto& sums, const auto& more) {
+            for (size_t i = 0; i < sums.size(); ++i) sums[i] += more[i];
+        };
+        fold(color, later.color), fold(features, later.features);
+        fold(squares, later.squares), fold(centres, later.centres);
+        return *this;
+    }
+    /// As if `later` had been added.
+    PixelSums pixel(size_t i, const TileSums* later = nullptr) const {
+        PixelSums out;
+        const auto take = [&](auto& into, const auto& sums, const auto& more) {
+            if (sums.empty()) return;
+            into = sums[i];
+            if (!more.empty()) into += more[i];
+        };
+        static const TileSums nothing;
+        const TileSums& more = later ? *later : nothing;
+        take(out.color, color, more.color), take(out.features, features, more.features);
+        take(out.squares, squares, more.squares), take(out.centre, centres, more.centres);
+        return out;
+    }
+};
+
+}  // namespace steradian
