@@ -76,8 +76,9 @@ TEST(GltfNormalMap, TakesTangentsThatAreGiven) {
 TEST(GltfNormalMap, SurfacesWithAGrainHaveTangents) {
     Square square;
     square.add_normals();
-    const LoadedScene loaded =
-        square.load("\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}");
+    const LoadedScene loaded = square.load(
+        "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"extensions\": {\"KHR_materials_anisotropy\": "
+        "{\"anisotropyStrength\": 0.5}}");
     EXPECT_EQ(loaded.scene.meshes.at(0).tangents.size(), 4u);
     EXPECT_TRUE(loaded.scene.reliefs.empty());
 }
@@ -155,8 +156,8 @@ TEST(GltfVertexColors, MultiplyColourAndAlpha) {
     EXPECT_EQ(plain.scene.meshes.at(0).alphas, std::vector<float>(4, 0.5f));
     // Opaque: alpha says nothing.
     EXPECT_FALSE(material_of<OpenPbrMaterial>(square.load("")).geometry_opacity.texture);
-    const LoadedScene textured = square.load(
-        "\"alphaMode\": \"MASK\", \"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0}}");
+    const LoadedScene textured =
+        square.load("\"alphaMode\": \"MASK\", \"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0}}");
     const auto t = material_of<OpenPbrMaterial>(textured);
     for (const auto& [texture, alpha] : {std::pair(t.base_color.texture, false), {t.geometry_opacity.texture, true}}) {
         const auto& product = std::get<ProductTexture>(textured.scene.textures[index(*texture)]);

@@ -123,8 +123,8 @@ TEST(TangentSpace, TrianglesThatSayNothing) {
     mesh.indices.insert(mesh.indices.end(), {2, 4, 4, 1, 4, 2});
     mesh.uvs[4] = mesh.uvs[2];
     add_tangents(mesh);
-    expect_tangent(at(mesh, 6), {1, 0, 0}, 1);   // without area: borrowed of vertex 2
-    expect_tangent(at(mesh, 9), {1, 0, 0}, 1);   // with area, without coordinates: of its neighbour over the edge
+    expect_tangent(at(mesh, 6), {1, 0, 0}, 1);  // without area: borrowed of vertex 2
+    expect_tangent(at(mesh, 9), {1, 0, 0}, 1);  // with area, without coordinates: of its neighbour over the edge
     expect_tangent(at(mesh, 11), {1, 0, 0}, 1);
     EXPECT_EQ(at(mesh, 10).direction, (Vec3{0, 0, 0}));
 }
@@ -166,7 +166,8 @@ TEST(TangentSpace, HostileMeshesEnd) {
     book.uvs = {{0, 0}, {0, 1}};
     for (uint32_t i = 0; i < kMany; ++i) {
         const float x = float(i) / kMany;
-        const auto at = static_cast<uint32_t>(fan.positions.size()), page = static_cast<uint32_t>(book.positions.size());
+        const auto at = static_cast<uint32_t>(fan.positions.size()),
+                   page = static_cast<uint32_t>(book.positions.size());
         fan.positions.insert(fan.positions.end(), {{1, x, 0}, {x, 1, 0}});
         fan.uvs.insert(fan.uvs.end(), {{1, -x * x}, {x, -1 - x}});
         fan.indices.insert(fan.indices.end(), {0, at, at + 1});

@@ -47,8 +47,8 @@ TEST(MeshAttributes, TexturesReadTheSetThatTheyName) {
     const SurfacePoint point = middle(world);
     const auto value = [&](uint32_t texture) { return eval_texture(world.shading, TextureId{texture}, point).r; };
     EXPECT_FLOAT_EQ(value(0), 0);
-    EXPECT_FLOAT_EQ(value(1), 0);                                     // the set is empty: the first
-    EXPECT_FLOAT_EQ(value(2), 102 / 255.0f);                          // at 5/8, a texel's centre
+    EXPECT_FLOAT_EQ(value(1), 0);             // the set is empty: the first
+    EXPECT_FLOAT_EQ(value(2), 102 / 255.0f);  // at 5/8, a texel's centre
     EXPECT_FLOAT_EQ(value(3), 102 / 255.0f * (102 / 255.0f));
     EXPECT_FLOAT_EQ(uv_at(world.shading, point, 2).x, 0.625f);
     EXPECT_FLOAT_EQ(uv_at(world.shading, point, 7).x, 0.125f);
@@ -81,8 +81,8 @@ Vec3d mapped(const Tangent& tangent, Rgb map, const Affine& world_from_object, b
     mesh.uvs = {{0, 0}, {0, 1}, {1, 0}};  // u along y: the tangents say otherwise
     Scene scene;
     test::add_mesh(scene, mesh, world_from_object);
-    const auto constant =
-        add<TextureId>(scene.textures, Texture{ConstantTexture{{map.r / 2 + 0.5f, map.g / 2 + 0.5f, map.b / 2 + 0.5f}}});
+    const auto constant = add<TextureId>(
+        scene.textures, Texture{ConstantTexture{{map.r / 2 + 0.5f, map.g / 2 + 0.5f, map.b / 2 + 0.5f}}});
     scene.reliefs = {{MaterialId{0}, NormalMap{constant}}};
     if (bake) bake_transforms(scene);
     const World world(std::move(scene));

@@ -1,6 +1,7 @@
 #include "formats/gltf/images.h"
 
 #include <numbers>
+
 #include "math/vector.h"
 
 namespace steradian::gltf {

@@ -11,9 +11,9 @@ namespace steradian {
 /// is looked up with; v runs downwards.
 ///
 /// Corners that share position, normal and texture coordinates share a tangent where their triangles are connected and
-/// none of them is mirrored in the texture; where one vertex needs several tangents, copies of it are appended. Vertices
-/// of triangles whose texture coordinates say nothing get a tangent of zero, unless they have one by their neighbours.
-/// Nothing changes for meshes without normals or without such coordinates.
+/// none of them is mirrored in the texture; where one vertex needs several tangents, copies of it are appended.
+/// Vertices of triangles whose texture coordinates say nothing get a tangent of zero, unless they have one by their
+/// neighbours. Nothing changes for meshes without normals or without such coordinates.
 void add_tangents(Mesh& mesh, uint32_t uv_set = 0);
 
 }  // namespace steradian
