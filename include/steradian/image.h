@@ -26,7 +26,7 @@ struct Image {
     std::map<std::string, std::string>
         metadata;  ///< text attributes, written to EXR and PNG; sorted, so files are equal
     /// Of each channel, or nothing where all go by the options. Whole numbers are exact up to 2²⁴, as floats are.
-    std::vector<ChannelType> types;
+    std::vector<ChannelType> types = {};
 };
 
 /// R, G and B alone, in that order: of a picture with AOVs, the picture without them. Nothing when one is missing.
