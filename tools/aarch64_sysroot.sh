@@ -10,7 +10,7 @@ set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 sysroot=${1:-$repository/build/aarch64-sysroot}
 packages=(libc6-dev libstdc++-12-dev linux-libc-dev libtbb-dev libopenexr-dev libpng-dev libjpeg-dev libxxhash-dev
-          libfmt-dev rapidjson-dev libcli11-dev libgtest-dev librapidcheck-dev)
+          libfmt-dev rapidjson-dev libcli11-dev libwebp-dev libmeshoptimizer-dev libdraco-dev libgtest-dev librapidcheck-dev)
 stamp=$sysroot/.complete
 wanted="${packages[*]}"
 

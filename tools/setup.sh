@@ -10,7 +10,7 @@
 set -euo pipefail
 
 build_packages=(g++ cmake ninja-build libtbb-dev libopenexr-dev libpng-dev libjpeg-dev libxxhash-dev libfmt-dev
-                rapidjson-dev libcli11-dev)
+                rapidjson-dev libcli11-dev libwebp-dev libmeshoptimizer-dev libdraco-dev)
 test_packages=(libgtest-dev)
 all_packages=(clang libclang-rt-dev llvm qemu-user g++-aarch64-linux-gnu)
 
@@ -35,7 +35,8 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         command -v "$tool" >/dev/null && continue
         fail "this is not Debian or Ubuntu, so nothing is installed by itself, and '$tool' is missing." \
             "Steradian needs a C++20 compiler (g++ 12 or clang 14, or newer), CMake 3.25, Ninja, and the libraries" \
-            "oneTBB 2021, OpenEXR 3, libpng, libjpeg-turbo, xxHash, fmt 9, RapidJSON and CLI11 2 with their headers;" \
+            "oneTBB 2021, OpenEXR 3, libpng, libjpeg-turbo, libwebp, meshoptimizer, Draco 1.5, xxHash, fmt 9, RapidJSON" \
+            "and CLI11 2 with their headers;" \
             "for the tests GoogleTest. On Debian these are: ${packages[*]}"
     done
     exit 0

@@ -44,7 +44,7 @@ void add_convert(CLI::App& app, Action& action) {
         add_command(app, action, "convert", "A picture from one format to another, for viewing or for other programs",
                     options, run_convert);
     c->footer(kFooter);
-    c->add_option("IN", options->input, "The picture to read: EXR, HDR, PFM, PNG or JPEG")->required();
+    c->add_option("IN", options->input, "The picture to read: EXR, HDR, PFM, PNG, JPEG or WebP")->required();
     c->add_option("OUT", options->output, "The picture to write: .exr, .hdr, .pfm or .png by its name")->required();
     add_picture_options(c, options->picture, "Options");
 }

@@ -52,6 +52,8 @@ const char* name_of(ImageFileKind kind) {
             return "HDR";
         case ImageFileKind::pfm:
             return "PFM";
+        case ImageFileKind::webp:
+            return "WebP";
         case ImageFileKind::unknown:
             break;
     }

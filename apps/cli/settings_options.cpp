@@ -264,7 +264,7 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
     c->add_option("--camera", options.camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
     c->add_option("--env", options.environment,
                   "What shines from far away, in place of the scene's own and of the studio of a bare model: none, a\n"
-                  "radiance R,G,B, or a latitude-longitude picture (HDR, EXR, PFM, PNG, JPEG)")
+                  "radiance R,G,B, or a latitude-longitude picture (HDR, EXR, PFM, PNG, JPEG, WebP)")
         ->type_name("WHAT")
         ->group("Picture");
     constexpr double kMaxTurn = 1e6, kMaxScale = 1e15;

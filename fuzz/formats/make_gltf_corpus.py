@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the glTF fuzz target, fuzz/corpus/gltf/, and its dictionary, fuzz/dictionaries/gltf.
+"""Writes the seeds of the glTF fuzz target, fuzz/corpus/gltf/, its dictionary, fuzz/dictionaries/gltf, and fuzz/corpus/webp/.
 
     fuzz/formats/make_gltf_corpus.py
 
-Small files that together use every part of the reader. They are the same bytes each time.
+Small files that together use every part of the reader. They are the same bytes each time. Needs the libraries that the
+reader needs, and for Draco the program draco_encoder (Debian's package draco).
 """
 import base64
+import ctypes
 import json
 import pathlib
 import re
 import struct
+import subprocess
+import tempfile
 
 FUZZ = pathlib.Path(__file__).resolve().parent.parent
 OUT = FUZZ / "corpus" / "gltf"
@@ -195,12 +199,117 @@ def moving():
     return f.binary()
 
 
+def webp(width, height, channels, lossless):
+    library = ctypes.CDLL("libwebp.so.7")
+    pixels = bytes((i * 53 + i // 7) % 256 for i in range(width * height * channels))
+    out = ctypes.POINTER(ctypes.c_uint8)()
+    name = f"WebPEncode{'Lossless' if lossless else ''}{'RGBA' if channels == 4 else 'RGB'}"
+    encode = getattr(library, name)
+    encode.restype = ctypes.c_size_t
+    quality = [] if lossless else [ctypes.c_float(75)]
+    size = encode(pixels, width, height, width * channels, *quality, ctypes.byref(out))
+    return ctypes.string_at(out, size)
+
+
+def meshopt(name, *arguments, size=4096):
+    library = ctypes.CDLL("libmeshoptimizer.so.2d")
+    encode = getattr(library, "meshopt_encode" + name)
+    encode.restype = ctypes.c_size_t
+    out = ctypes.create_string_buffer(size)
+    return out.raw[:encode(out, ctypes.c_size_t(size), *arguments)]
+
+
+def meshopt_vertices(data, stride):
+    return meshopt("VertexBuffer", data, ctypes.c_size_t(len(data) // stride), ctypes.c_size_t(stride))
+
+
+def meshopt_indices(name, indices):
+    return meshopt(name, (ctypes.c_uint32 * len(indices))(*indices), ctypes.c_size_t(len(indices)))
+
+
+def meshopt_file():
+    """Every mode and every filter."""
+    f = File(extensionsUsed=["EXT_meshopt_compression"], extensionsRequired=["EXT_meshopt_compression"],
+             nodes=[{"mesh": 0, "rotation": [0, 0, 0, 1]}, {"mesh": 1}])
+
+    def view(data, mode, count, stride, filter="NONE"):
+        begin = len(f.data)
+        f.data += data
+        return f.add("bufferViews", {
+            "buffer": 0, "byteLength": count * stride, **({"byteStride": stride} if mode == "ATTRIBUTES" else {}),
+            "extensions": {"EXT_meshopt_compression": {"buffer": 0, "byteOffset": begin, "byteLength": len(data),
+                                                       "byteStride": stride, "count": count, "mode": mode, "filter": filter}}})
+
+    n = 6
+    points = [(x, y, x * y % 3) for y in range(n) for x in range(n)]
+    floats = struct.pack(f"<{3 * n * n}f", *[c for p in points for c in p])
+    exponents = struct.pack(f"<{3 * n * n}I", *[(0xFC << 24 | c * 16) & 0xFFFFFFFF for p in points for c in p])
+    normals = struct.pack(f"<{4 * n * n}b", *[c for i in range(n * n) for c in (i, -i, 127, 0)])
+    turns = struct.pack(f"<{4 * n * n}h", *[c for i in range(n * n) for c in (i * 50, -i * 30, 7, 0x7FFC | i % 4)])
+    corners = [y * n + x + d for y in range(n - 1) for x in range(n - 1) for d in (0, 1, n, 1, n + 1, n)]
+    whole = {"count": n * n, "componentType": FLOAT, "type": "VEC3"}
+    p = f.add("accessors", {"bufferView": view(meshopt_vertices(floats, 12), "ATTRIBUTES", n * n, 12), **whole})
+    q = f.add("accessors", {"bufferView": view(meshopt_vertices(exponents, 12), "ATTRIBUTES", n * n, 12, "EXPONENTIAL"), **whole})
+    k = f.add("accessors", {"bufferView": view(meshopt_vertices(normals, 4), "ATTRIBUTES", n * n, 4, "OCTAHEDRAL"),
+                            "count": n * n, "componentType": I8, "normalized": True, "type": "VEC3"})
+    r = f.add("accessors", {"bufferView": view(meshopt_vertices(turns, 8), "ATTRIBUTES", n * n, 8, "QUATERNION"),
+                            "count": n * n, "componentType": I16, "normalized": True, "type": "VEC4"})
+    indices = [f.add("accessors", {"bufferView": view(meshopt_indices(name, corners), mode, len(corners), size),
+                                   "count": len(corners), "componentType": kind, "type": "SCALAR"})
+               for name, mode, size, kind in (("IndexBuffer", "TRIANGLES", 2, U16), ("IndexSequence", "INDICES", 4, U32))]
+    f.mesh({"POSITION": p, "NORMAL": k}, indices=indices[0])
+    f.mesh({"POSITION": q}, indices=indices[1])
+    f.tree["nodes"][1]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"ROTATION": r}}}
+    return f.binary()
+
+
+def draco_file(level):
+    """A grid with texture coordinates; level 0 of the encoder is sequential, the others are edgebreaker."""
+    n = 4
+    lines = [f"v {x} {y} {x * y % 3}" for y in range(n) for x in range(n)]
+    lines += [f"vt {x / n} {y / n}" for y in range(n) for x in range(n)]
+    for y in range(n - 1):
+        for x in range(n - 1):
+            a = y * n + x + 1
+            lines += [f"f {i}/{i} {j}/{j} {k}/{k}" for i, j, k in ((a, a + 1, a + n), (a + 1, a + n + 1, a + n))]
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "grid.obj").write_text("\n".join(lines) + "\n")
+        subprocess.run(["draco_encoder", "-i", "grid.obj", "-o", "grid.drc", "-cl", str(level)], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL)
+        data = (pathlib.Path(folder) / "grid.drc").read_bytes()
+    f = File(nodes=[{"mesh": 0}], extensionsUsed=["KHR_draco_mesh_compression"],
+             extensionsRequired=["KHR_draco_mesh_compression"])
+    view = f.view(data)
+    add = lambda kind, component, count: f.add("accessors", {"componentType": component, "type": kind, "count": count})
+    attributes = {"POSITION": add("VEC3", FLOAT, n * n), "TEXCOORD_0": add("VEC2", FLOAT, n * n)}
+    f.mesh(attributes, indices=add("SCALAR", U16, 6 * (n - 1) ** 2), extensions={
+        "KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 0, "TEXCOORD_0": 1}}})
+    return f.binary()
+
+
+def webp_textured():
+    """The same as textured(), by EXT_texture_webp."""
+    f = File(nodes=[{"mesh": 0}], textures=[{"extensions": {"EXT_texture_webp": {"source": 0}}}],
+             materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "alphaMode": "BLEND"}],
+             extensionsUsed=["EXT_texture_webp"])
+    f.add("images", {"bufferView": f.view(webp(5, 3, 4, True)), "mimeType": "image/webp"})
+    f.mesh({"POSITION": f.accessor("VEC3", FLOAT, TRIANGLE), "TEXCOORD_0": f.accessor("VEC2", FLOAT, [0, 0, 1, 0, 0, 1])},
+           material=0)
+    return f.binary()
+
+
+def pictures():
+    return {f"{'lossless' if lossless else 'lossy'}{channels}.webp": webp(19, 11, channels, lossless)
+            for lossless in (True, False) for channels in (3, 4)}
+
+
 def files():
     png, jpeg = (FUZZ / "corpus/png/rgba.png").read_bytes(), (FUZZ / "corpus/jpeg/rgb.jpg").read_bytes()
     return {"indexed.gltf": indexed(), "strip_and_fan.glb": strip_and_fan(), "quantized.glb": quantized(),
             "sparse.gltf": sparse(), "nodes.gltf": nodes(), "instancing.glb": instancing(), "materials.gltf": materials(),
             "variants.gltf": variants(), "png.glb": textured(png, "image/png"), "jpeg.glb": textured(jpeg, "image/jpeg"),
-            "moving.glb": moving()}
+            "moving.glb": moving(), "meshopt.glb": meshopt_file(), "webp.glb": webp_textured(),
+            "draco_sequential.glb": draco_file(0), "draco_edgebreaker.glb": draco_file(7)}
 
 
 def dictionary():
@@ -212,9 +321,10 @@ def dictionary():
 
 
 def main():
-    OUT.mkdir(parents=True, exist_ok=True)
-    for name, data in files().items():
-        (OUT / name).write_bytes(data)
+    for folder, made in ((OUT, files()), (FUZZ / "corpus" / "webp", pictures())):
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, data in made.items():
+            (folder / name).write_bytes(data)
     (FUZZ / "dictionaries").mkdir(exist_ok=True)
     (FUZZ / "dictionaries" / "gltf").write_text(dictionary())
 

@@ -41,7 +41,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         require(raw->channels >= 1 && raw->channels <= 4);
         const auto claim = texel_claim(bytes);
         const ImageFileKind kind = image_kind(bytes);
-        require(claim.has_value() == (kind == ImageFileKind::png || kind == ImageFileKind::jpeg));
+        require(claim.has_value() ==
+                (kind == ImageFileKind::png || kind == ImageFileKind::jpeg || kind == ImageFileKind::webp));
         require(!claim || (claim->width == raw->width && claim->height == raw->height));
         require(!claim || (claim->channels >= raw->channels && claim->value_bytes == value_size(raw->format)));
         require(raw->data.size() == size_t(raw->width) * raw->height * raw->channels * value_size(raw->format));

@@ -20,8 +20,8 @@ struct ImageWriteOptions {
 Status write_image(const std::string& path, const Image& image, const ImageWriteOptions& options = {},
                    Diagnostics* diagnostics = nullptr);
 
-/// EXR, HDR, PFM, PNG or JPEG, told by content whatever the name. PNG and JPEG are linearised from sRGB, whatever gamma
-/// they state; EXR is converted to Rec. 709 when it states other primaries. Alpha stays as it is stored.
+/// EXR, HDR, PFM, PNG, JPEG or WebP, told by content whatever the name. PNG and JPEG are linearised from sRGB, whatever
+/// gamma they state; EXR is converted to Rec. 709 when it states other primaries. Alpha stays as it is stored.
 Result<Image> read_image(const std::string& path, const ImageLimits& limits = {});
 
 }  // namespace steradian

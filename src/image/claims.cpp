@@ -1,4 +1,6 @@
 // What the header of a picture claims, for callers that decide about memory before anything is decoded.
+#include <webp/decode.h>
+
 #include "image/decode.h"
 
 namespace steradian {
@@ -47,6 +49,14 @@ std::optional<TexelClaim> jpeg_claim(std::string_view bytes) {
     return std::nullopt;
 }
 
+std::optional<TexelClaim> webp_claim(std::string_view bytes) {
+    WebPBitstreamFeatures features;
+    if (WebPGetFeatures(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), &features) != VP8_STATUS_OK)
+        return std::nullopt;
+    return TexelClaim{static_cast<uint64_t>(features.width), static_cast<uint64_t>(features.height),
+                      static_cast<uint8_t>(features.has_alpha ? 4 : 3), 1};
+}
+
 }  // namespace
 
 std::optional<TexelClaim> texel_claim(std::string_view bytes) {
@@ -55,6 +65,8 @@ std::optional<TexelClaim> texel_claim(std::string_view bytes) {
             return png_claim(bytes);
         case ImageFileKind::jpeg:
             return jpeg_claim(bytes);
+        case ImageFileKind::webp:
+            return webp_claim(bytes);
         default:
             return std::nullopt;
     }

@@ -51,6 +51,7 @@ Decoded decode_png(const Source& source);
 Decoded decode_jpeg(const Source& source);
 Decoded decode_hdr(const Source& source);
 Decoded decode_pfm(const Source& source);
+Decoded decode_webp(const Source& source);
 Decoded decode_exr_texels(const Source& source);
 Image decode_exr_image(const Source& source);
 

@@ -11,7 +11,7 @@
 
 namespace steradian {
 
-enum class ImageFileKind : uint8_t { png, jpeg, exr, hdr, pfm, unknown };
+enum class ImageFileKind : uint8_t { png, jpeg, exr, hdr, pfm, webp, unknown };
 
 /// By the first bytes, whatever the name.
 ImageFileKind image_kind(std::string_view bytes) noexcept;
@@ -24,8 +24,8 @@ ImageFileKind image_kind(std::string_view bytes) noexcept;
 /// unsupported file (deep EXR, CMYK JPEG), resources beyond a limit. The header's claims are checked against the limits
 /// and against the size of the file before memory is taken: a file may expand to 256 MiB, or to 256 times its own size.
 Result<RawImage> decode_texels(std::string_view bytes, const std::string& name, const ImageLimits& limits);
-/// What decode_texels makes of a PNG or a JPEG if it accepts it, by its header alone (`channels` may be one more, where
-/// transparency is damaged); nothing for other kinds, and where there is no header. Takes no memory.
+/// What decode_texels makes of a PNG, a JPEG or a WebP if it accepts it, by its header alone (`channels` may be one
+/// more, where transparency is damaged); nothing for other kinds, and where there is no header. Takes no memory.
 struct TexelClaim {
     uint64_t width = 0, height = 0;  ///< below 2^32
     uint8_t channels = 0, value_bytes = 1;

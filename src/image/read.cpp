@@ -45,11 +45,13 @@ codec::Decoded decode(const codec::Source& source) {
             return codec::decode_hdr(source);
         case ImageFileKind::pfm:
             return codec::decode_pfm(source);
+        case ImageFileKind::webp:
+            return codec::decode_webp(source);
         case ImageFileKind::unknown:
             break;
     }
     if (source.bytes.empty()) source.fail("the file is empty, expected a picture");
-    source.fail("this is not a picture that can be read: expected EXR, HDR, PFM, PNG or JPEG", 0);
+    source.fail("this is not a picture that can be read: expected EXR, HDR, PFM, PNG, JPEG or WebP", 0);
 }
 
 template <class T>
@@ -109,6 +111,7 @@ ImageFileKind image_kind(std::string_view bytes) noexcept {
     if (bytes.starts_with("#?"sv)) return ImageFileKind::hdr;
     const bool pfm = bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f');
     if (pfm && (bytes[2] == '\n' || bytes[2] == ' ' || bytes[2] == '\r' || bytes[2] == '\t')) return ImageFileKind::pfm;
+    if (bytes.starts_with("RIFF"sv) && bytes.size() >= 12 && bytes.substr(8, 4) == "WEBP"sv) return ImageFileKind::webp;
     return ImageFileKind::unknown;
 }
 

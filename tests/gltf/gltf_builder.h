@@ -54,6 +54,19 @@ public:
         bytes_.append(bytes);
         return static_cast<int>(views_.size() - 1);
     }
+    /// A view that holds these bytes by EXT_meshopt_compression: `count` elements of `stride` bytes.
+    int compressed_view(std::string_view bytes, std::string_view mode, size_t count, size_t stride,
+                        std::string_view filter = "NONE") {
+        const std::string length = std::to_string(bytes.size()), each = std::to_string(stride);
+        views_.push_back("{\"buffer\": 0, \"byteLength\": " + std::to_string(count * stride) +
+                         (mode == "ATTRIBUTES" ? ", \"byteStride\": " + each : std::string()) +
+                         ", \"extensions\": {\"EXT_meshopt_compression\": {\"buffer\": 0, \"byteOffset\": " +
+                         std::to_string(bytes_.size()) + ", \"byteLength\": " + length + ", \"byteStride\": " + each +
+                         ", \"count\": " + std::to_string(count) + ", \"mode\": \"" + std::string(mode) +
+                         "\", \"filter\": \"" + std::string(filter) + "\"}}}");
+        bytes_.append(bytes);
+        return static_cast<int>(views_.size() - 1);
+    }
     /// Other top-level members: "nodes", "meshes", …
     std::string text(const std::string& members) const {
         const auto list = [](const std::vector<std::string>& elements) {

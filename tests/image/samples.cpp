@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <webp/encode.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -91,6 +92,25 @@ std::string png_file(uint32_t width, uint32_t height, int bit_depth, int colour_
     const std::string header = big_endian(width) + big_endian(height) + static_cast<char>(bit_depth) +
                                static_cast<char>(colour_type) + std::string(3, '\0');
     return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", header) + png_chunk("IDAT", packed) + png_chunk("IEND", "");
+}
+
+std::string webp_file(uint32_t width, uint32_t height, int channels, bool lossless,
+                      const std::vector<unsigned char>& pixels) {
+    WebPConfig config;
+    WebPPicture picture;
+    WebPMemoryWriter writer;
+    WebPConfigInit(&config), WebPPictureInit(&picture), WebPMemoryWriterInit(&writer);
+    config.lossless = lossless ? 1 : 0;
+    config.exact = 1;
+    picture.use_argb = 1;
+    picture.width = static_cast<int>(width), picture.height = static_cast<int>(height);
+    picture.writer = WebPMemoryWrite, picture.custom_ptr = &writer;
+    const int stride = static_cast<int>(width) * channels;
+    const bool good = (channels == 4 ? WebPPictureImportRGBA : WebPPictureImportRGB)(&picture, pixels.data(), stride) &&
+                      WebPEncode(&config, &picture);
+    std::string out(reinterpret_cast<char*>(writer.mem), good ? writer.size : 0);
+    WebPPictureFree(&picture), WebPMemoryWriterClear(&writer);
+    return out;
 }
 
 Cost cost_of(int (*body)(const void*), const void* argument) {

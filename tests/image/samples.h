@@ -24,6 +24,10 @@ std::string jpeg_file(uint32_t width, uint32_t height, int components, bool prog
 /// `colour_type` as in the specification; `rows` are the filtered rows before deflate.
 std::string png_file(uint32_t width, uint32_t height, int bit_depth, int colour_type, const std::string& rows);
 
+/// A WebP by libwebp, of RGB (3 channels) or RGBA (4); without loss, what is transparent included, or with.
+std::string webp_file(uint32_t width, uint32_t height, int channels, bool lossless,
+                      const std::vector<unsigned char>& pixels);
+
 /// One chunk of a PNG, with its length and checksum.
 std::string png_chunk(const std::string& type, const std::string& data);
 

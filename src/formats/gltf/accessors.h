@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
 #include <vector>
 
-#include "formats/gltf/buffers.h"
+#include "formats/gltf/draco.h"
 
 namespace steradian::gltf {
 
@@ -35,10 +38,14 @@ struct Accessor {
 
 class Accessors {
 public:
-    Accessors(Context& context, Buffers& buffers) : context_(context), buffers_(buffers) {}
+    Accessors(Context& context, Buffers& buffers) : context_(context), buffers_(buffers), draco_(context, buffers) {}
 
     /// Checked when it is first asked for.
     const Accessor& open(uint32_t number);
+
+    /// Draco data of a primitive, if it has some, become what its accessors refer to (draco.cpp). Call it before they
+    /// are opened.
+    void decompress(const Object& primitive);
 
     // Elements as they are meant, after normalisation and with sparse ones in place. The number of components must be
     // that of the result; memory is taken from the budget.
@@ -62,6 +69,9 @@ private:
     Context& context_;
     Buffers& buffers_;
     std::map<uint32_t, Accessor> open_;
+    DracoMeshes draco_;
+    std::set<uint32_t> decompressed_;
+    std::vector<std::unique_ptr<std::byte[]>> decoded_;
 };
 
 }  // namespace steradian::gltf

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "formats/gltf/meshopt.h"
 #include "formats/gltf/uri.h"
 
 namespace steradian::gltf {
@@ -69,8 +70,8 @@ Buffers::View Buffers::view(uint32_t number) {
     return known != views_.end() ? known->second : views_.emplace(number, check(number)).first->second;
 }
 
-Buffers::View Buffers::check(uint32_t number) {
-    const Object view(context_.source, context_.tables.buffer_views.elements[number], "a buffer view");
+/// The bytes that an object names by buffer, offset and length.
+Buffers::Bytes Buffers::part_of_buffer(const Object& view) {
     const uint32_t of = view.require_reference("buffer", context_.tables.buffers);
     const uint64_t begin = view.integer_or("byteOffset", 0, 0, kMaxBytes);
     const uint64_t length =
@@ -80,7 +81,29 @@ Buffers::View Buffers::check(uint32_t number) {
         context_.source.fail(view.offset(), "the buffer view needs bytes " + std::to_string(begin) + " to " +
                                                 std::to_string(begin + length) + " of a buffer with " +
                                                 std::to_string(bytes.size()));
-    return {bytes.subspan(begin, length), view.integer_or("byteStride", 0, 4, 252)};
+    return bytes.subspan(begin, length);
+}
+
+Buffers::Bytes Buffers::decompress(const Object& view, const Object& extension) {
+    const meshopt::Header header = meshopt::read_header(extension);
+    const uint64_t length =
+        json::read_integer(context_.source, view.require("byteLength"), "'byteLength'", 1, kMaxBytes);
+    if (length != header.bytes())
+        context_.source.fail(view.offset_of("byteLength"), "the buffer view has " + std::to_string(length) +
+                                                               " bytes, but its data are " +
+                                                               std::to_string(header.bytes()) + " when decompressed");
+    const Bytes compressed = part_of_buffer(extension);
+    context_.budget.take(header.bytes(), context_.source, extension.offset());
+    auto bytes = meshopt::decode(header, compressed);
+    if (!bytes) context_.source.fail(extension.offset(), "the data are not compressed as the extension says");
+    return std::as_bytes(std::span(*owned_.emplace_back(std::make_shared<const std::string>(std::move(*bytes)))));
+}
+
+Buffers::View Buffers::check(uint32_t number) {
+    const Object view(context_.source, context_.tables.buffer_views.elements[number], "a buffer view");
+    const auto compressed = view.extension("EXT_meshopt_compression");
+    const Bytes bytes = compressed ? decompress(view, *compressed) : part_of_buffer(view);
+    return {bytes, view.integer_or("byteStride", 0, 4, 252)};
 }
 
 }  // namespace steradian::gltf

@@ -32,6 +32,8 @@ public:
 
 private:
     Bytes buffer(uint32_t number);
+    Bytes part_of_buffer(const Object& view);
+    Bytes decompress(const Object& view, const Object& extension);
     View check(uint32_t number);
     std::string read_data(std::string_view uri, size_t offset) const;
 

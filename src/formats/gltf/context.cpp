@@ -10,7 +10,8 @@ namespace steradian::gltf {
 namespace {
 
 /// What can be required of us: all of it is honoured, or reported where it is not.
-constexpr std::array<std::string_view, 15> kExtensions{"KHR_lights_punctual",
+constexpr std::array<std::string_view, 18> kExtensions{"KHR_draco_mesh_compression",
+                                                       "KHR_lights_punctual",
                                                        "KHR_materials_anisotropy",
                                                        "KHR_materials_clearcoat",
                                                        "KHR_materials_diffuse_transmission",
@@ -24,17 +25,9 @@ constexpr std::array<std::string_view, 15> kExtensions{"KHR_lights_punctual",
                                                        "KHR_materials_volume",
                                                        "KHR_mesh_quantization",
                                                        "KHR_texture_transform",
-                                                       "EXT_mesh_gpu_instancing"};
-
-/// What to do about well-known ones that we do not have.
-std::string remedy(std::string_view name) {
-    if (name == "KHR_texture_basisu")
-        return "its textures are KTX2 files: export them as PNG or JPEG, or convert the file with 'gltf-transform'";
-    if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression")
-        return "its meshes are compressed: export without compression, or run 'gltf-transform copy' over the file";
-    if (name == "EXT_texture_webp") return "its textures are WebP files: export them as PNG or JPEG";
-    return {};
-}
+                                                       "EXT_mesh_gpu_instancing",
+                                                       "EXT_meshopt_compression",
+                                                       "EXT_texture_webp"};
 
 bool is_known(std::string_view name) {
     return std::find(kExtensions.begin(), kExtensions.end(), name) != kExtensions.end();
@@ -61,6 +54,13 @@ void each_extension(Value root, Visit visit) {
 }
 
 }  // namespace
+
+std::string remedy(std::string_view extension) {
+    if (extension == "KHR_texture_basisu")
+        return "its textures are KTX2 files: export them as PNG, JPEG or WebP, or convert the file: 'gltf-transform "
+               "ktxdecompress IN OUT'";
+    return {};
+}
 
 Tables::Tables(const Object& root) {
     for (Table* table : {&accessors, &buffer_views, &buffers, &cameras, &images, &materials, &meshes, &nodes, &samplers,

@@ -66,6 +66,9 @@ private:
     std::set<std::string> warned_, reported_;
 };
 
+/// What to do about a well-known extension that we do not have, for hints.
+std::string remedy(std::string_view extension);
+
 /// Fails when the file requires an extension that is not there; reports those that it uses only.
 void check_extensions(Context& context, const Object& root);
 

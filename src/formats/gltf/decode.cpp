@@ -39,7 +39,6 @@ RawImage white() { return {1, 1, 1, TexelFormat::u8, {std::byte{255}}}; }
 
 std::string what_it_is(std::string_view bytes) {
     if (bytes.starts_with("\xabKTX 20")) return "a KTX2 texture (KHR_texture_basisu)";
-    if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "a WebP picture";
     if (bytes.starts_with("DDS ")) return "a DDS texture";
     return {};
 }
@@ -53,7 +52,7 @@ Error Images::cannot_decode(const Image& image, const Error& error) {
                 "the image is " + what + ", which is not supported",
                 {},
                 {},
-                "export it as PNG or JPEG"};
+                "export it as PNG, JPEG or WebP"};
     const std::string at = error.where.byte ? " (at byte " + std::to_string(*error.where.byte) + ")" : std::string();
     return {error.code, "the image cannot be decoded: " + error.message + at, {}, {}, error.hint};
 }
@@ -64,8 +63,9 @@ uint64_t Images::claim(const Image& image) {
     const auto header = texel_claim(image.encoded);
     if (!header) {
         const bool known = image_kind(image.encoded) != ImageFileKind::unknown;
-        Error error = make_error(ErrorCode::bad_input, known ? "its header is damaged, or it is neither PNG nor JPEG"
-                                                             : "expected PNG or JPEG");
+        Error error =
+            make_error(ErrorCode::bad_input, known ? "its header is damaged, or it is none of PNG, JPEG and WebP"
+                                                   : "expected PNG, JPEG or WebP");
         error = cannot_decode(image, error);
         context_.source.fail(image.offset, error.message, error.hint, error.code);
     }

@@ -44,7 +44,12 @@ std::optional<TextureUse> Images::use(const Object& object, std::string_view key
 }
 
 uint32_t Images::image_of(const Object& texture, size_t offset) {
+    if (const auto webp = texture.extension("EXT_texture_webp"))
+        return webp->require_reference("source", context_.tables.images);
     if (const auto image = texture.reference("source", context_.tables.images)) return *image;
+    if (texture.extension("KHR_texture_basisu"))
+        context_.source.fail(texture.offset(), "the only image of the texture is a KTX2 file (KHR_texture_basisu)",
+                             remedy("KHR_texture_basisu"));
     context_.source.fail(texture.offset(), "the texture has no image that can be read",
                          "the material that uses it is at " + context_.source.where(offset).str());
 }

@@ -183,6 +183,7 @@ std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, 
         context_.not_honoured("points and lines are not rendered", primitive.offset());
         return std::nullopt;
     }
+    accessors_.decompress(primitive);
     const Key key = key_of(primitive, attributes, look, mode);
     if (key.positions == kNone) {
         context_.warn("a primitive without positions is ignored", attributes.offset());
