@@ -163,7 +163,8 @@ struct ColorInput {
 
 /// OpenPBR Surface 1.1, both sides: a matte, glassy or metallic base below a coat and fuzz. Names, meaning and defaults
 /// are those of the specification; weights, roughnesses and anisotropies are in [0, 1]. Subsurface scattering is
-/// diffuse, and transmission is tinted at the surface. A roughness of 0 counts as α = 1e-4.
+/// diffuse, and transmission is tinted at the surface. A roughness of 0 counts as α = 1e-4. Instances of a material
+/// that emits are lights (see add_emission in scene/emission.h), one-sided unless the wall is thin.
 struct OpenPbrMaterial {
     float base_weight = 1;
     ColorInput base_color{{0.8f, 0.8f, 0.8f}};
@@ -178,6 +179,7 @@ struct OpenPbrMaterial {
     ColorInput transmission_color{};
     FloatInput subsurface_weight{0};
     ColorInput subsurface_color{{0.8f, 0.8f, 0.8f}};
+    float subsurface_scatter_anisotropy = 0;  ///< in [-1, 1]; of thin walls: from what is reflected to what passes
     FloatInput fuzz_weight{0};
     ColorInput fuzz_color{};
     float fuzz_roughness = 0.5f;
@@ -187,8 +189,14 @@ struct OpenPbrMaterial {
     float coat_roughness_anisotropy = 0;
     float coat_ior = 1.6f;  ///< at least 1
     float coat_darkening = 1;
+    float thin_film_weight = 0;
+    float thin_film_thickness = 0.5f;  ///< micrometres, 0 … 10
+    float thin_film_ior = 1.4f;        ///< 1 … 3
+    float emission_luminance = 0;      ///< W/(m² sr), as nits are taken for, in [0, 1e9]
+    ColorInput emission_color{};
     FloatInput geometry_opacity{1};
     float geometry_opacity_cutoff = 0;  ///< above 0: an opacity below it counts as 0, any other as 1
+    bool geometry_thin_walled = false;  ///< a sheet without an inside, instead of the boundary of a body
 };
 
 /// Two materials on one surface: what scatters is (1 - weight) of the first and weight of the second, each with its own

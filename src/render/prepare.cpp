@@ -10,6 +10,7 @@
 #include "math/transform.h"
 #include "render/memory_estimate.h"
 #include "render/render_scene.h"
+#include "scene/emission.h"
 #include "scene/validate.h"
 #include "shading/surface.h"
 
@@ -83,6 +84,7 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     if (cancelled()) return cancelled_error();
     sanitize(scene, diagnostics);
     if (auto status = validate(scene); !status) return std::move(status).error();
+    add_emission(scene);
     if (scene.lights.empty()) diagnostics.warn("the scene has no lights: the picture will be black");
     if (auto status = check_scene_memory(estimate_memory(scene, smallest_picture(), execution)); !status)
         return std::move(status).error();

@@ -72,10 +72,12 @@ private:
     void put(const OpenPbrMaterial& m) {
         put(m.base_weight, m.base_color, m.base_metalness, m.base_diffuse_roughness);
         put(m.specular_weight, m.specular_color, m.specular_roughness, m.specular_ior, m.specular_roughness_anisotropy);
-        put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color);
+        put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color,
+            m.subsurface_scatter_anisotropy);
         put(m.fuzz_weight, m.fuzz_color, m.fuzz_roughness);
         put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
-        put(m.geometry_opacity, m.geometry_opacity_cutoff);
+        put(m.thin_film_weight, m.thin_film_thickness, m.thin_film_ior, m.emission_luminance, m.emission_color);
+        put(m.geometry_opacity, m.geometry_opacity_cutoff, m.geometry_thin_walled);
     }
     void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const BumpMap& m) { put(m.texture, m.scale); }

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "math/ray.h"
 #include "math/transform.h"
+#include "scene/emission.h"
 
 namespace steradian {
 namespace {
@@ -34,6 +35,7 @@ public:
         light_uniqueness();
         relief_uniqueness();
         mixes_end();
+        emission_uniqueness();
     }
 
 private:
@@ -158,14 +160,22 @@ private:
                               m.coat_roughness, m.coat_roughness_anisotropy})
             unit(r, roughness);
         const char* colors = "colours must be finite and not negative";
-        for (const ColorInput* c :
-             {&m.base_color, &m.transmission_color, &m.subsurface_color, &m.fuzz_color, &m.coat_color})
+        for (const ColorInput* c : {&m.base_color, &m.transmission_color, &m.subsurface_color, &m.fuzz_color,
+                                    &m.coat_color, &m.emission_color})
             color(*c, colors);
         color(m.specular_color, colors);
         require(max_component(m.specular_color) <= 1, "the specular colour must be at most 1");
         require(m.specular_weight >= 0 && m.specular_weight <= 10, "specular_weight must be between 0 and 10");
         require(m.specular_ior >= 0.1f && m.specular_ior <= 10, "specular_ior must be between 0.1 and 10");
         require(m.coat_ior >= 1.01f && m.coat_ior <= 3, "coat_ior must be between 1.01 and 3");
+        require(m.subsurface_scatter_anisotropy >= -1 && m.subsurface_scatter_anisotropy <= 1,
+                "subsurface_scatter_anisotropy must be between -1 and 1");
+        unit(m.thin_film_weight, weights);
+        require(m.thin_film_thickness >= 0 && m.thin_film_thickness <= 10,
+                "thin_film_thickness must be between 0 and 10 micrometres");
+        require(m.thin_film_ior >= 1 && m.thin_film_ior <= 3, "thin_film_ior must be between 1 and 3");
+        require(m.emission_luminance >= 0 && m.emission_luminance <= 1e9f,
+                "emission_luminance must be between 0 and 1e9");
     }
     void check(const MixMaterial& m) const {
         unit(m.weight, "the weight must be between 0 and 1");
@@ -350,6 +360,16 @@ private:
             }
         }
         if (environments > 1) throw Fault{"there are two environment lights, at most one is possible"};
+    }
+
+    void emission_uniqueness() const {
+        for (const Light& light : s_.lights) {
+            const auto* area = std::get_if<AreaLight>(&light);
+            if (!area || is_black(emission_of(s_, s_.instances[index(area->instance)].material).radiance)) continue;
+            throw Fault{
+                fmt::format("object {} has an area light and a material that emits, only one of them is possible",
+                            index(area->instance))};
+        }
     }
 
     const Scene& s_;

@@ -15,7 +15,9 @@
 
 namespace steradian {
 
-struct OpenPbrTables;  // what its layers reflect, see open_pbr_tables.h
+struct OpenPbrTables;    // what its layers reflect, see open_pbr_tables.h
+class FilmOnDielectric;  // what thin films reflect, see thin_film.h
+class FilmOnMetal;
 
 struct DiffuseBsdf {
     Rgb reflectance;
@@ -38,6 +40,8 @@ struct ConductorBsdf {
         Rgb dip{};  ///< times μ (1 - μ)⁶: by how much it is darker, most at 82 degrees
     };
     std::variant<ComplexIndex, Schlick> fresnel;
+    const FilmOnMetal* film = nullptr;  ///< of a Schlick metal, on so much of the surface as film_weight says
+    float film_weight = 0;
     Rgb mean_fresnel;
     Rgb tint{1, 1, 1};
     Microfacets facets;
@@ -48,6 +52,7 @@ struct RoughGlassBsdf {
     Rgb reflectance, transmittance;
     Microfacets facets{0.1f, 0.1f};            ///< not smooth
     const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
+    const FilmOnDielectric* film = nullptr;    ///< if not null, says what is reflected
 };
 struct ThinGlassBsdf {
     float eta = 1.5f;
@@ -67,6 +72,8 @@ struct OpenPbrBsdf {
     Rgb fuzz_color;
     float metalness = 0, transmission = 0, subsurface = 0, diffuse_roughness = 0;
     float coat_weight = 0, fuzz_weight = 0;
+    float passed_share = 0;  ///< of what the subsurface of a thin wall scatters
+    bool thin_walled = false;
     Microfacets coat;
     const OpenPbrTables* tables = nullptr;
 };

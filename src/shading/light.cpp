@@ -33,6 +33,7 @@ float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& f
 Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept {
     const uint32_t light = scene.instances[point.instance].area_light;
     if (light == kNoLight) return {};
+    if (scene.lights[light].of_material) return material_emission(scene, point, wo);
     const AreaLight& area = std::get<AreaLight>(scene.scene.lights[light]);
     const float side = dot(wo, point.ng);
     return side > 0 || (side < 0 && area.two_sided) ? area.radiance : Rgb{};

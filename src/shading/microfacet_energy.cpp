@@ -109,10 +109,11 @@ double reflecting_albedo(const Ggx& ggx, Vec3d o) {
     });
 }
 
-double coating_albedo(const Ggx& ggx, Vec3d o, double eta) {
+template <class Reflectance>
+double coating_albedo(const Ggx& ggx, Vec3d o, const Reflectance& reflectance) {
     return integrate_facets(ggx, o, false, [&](Vec3d h, double oh) {
         const Vec3d wi = reflect(o, h);
-        return wi.z > 0 ? fresnel_dielectric(oh, eta) * ggx.masking_over_cosine(o, wi) : 0;
+        return wi.z > 0 ? reflectance(oh) * ggx.masking_over_cosine(o, wi) : 0;
     });
 }
 
@@ -207,7 +208,15 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Rough
 
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughness& roughness, double eta) {
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
-    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, eta); });
+    const auto fresnel = [&](double cosine) { return fresnel_dielectric(cosine, eta); };
+    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, fresnel); });
+    return out;
+}
+
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughness& roughness,
+                                                                  const std::function<double(double)>& reflectance) {
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
+    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, reflectance); });
     return out;
 }
 

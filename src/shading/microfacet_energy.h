@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,6 +39,9 @@ public:
     static std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& roughness);
     /// Facets of a dielectric that reflect; what refracts is lost. eta: far over near side, > 1.
     static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness, double eta);
+    /// The same by any reflectance, of the cosine to the facet.
+    static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness,
+                                                           const std::function<double(double)>& reflectance);
     /// Facets of a dielectric of index eta, inside over outside, that reflect and refract.
     static std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& roughness, double eta);
 

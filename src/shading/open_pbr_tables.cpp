@@ -91,7 +91,48 @@ float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noe
     return static_cast<float>(r + (rougher - r) * m.coat_weight);
 }
 
-OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m) {
+std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Roughness& r, double eta) {
+    auto& known = energy_[Key{kind, r.value.x, r.value.y, r.squared, r.texture.has_value(), eta}];
+    if (known) return known;
+    switch (kind) {
+        case Kind::reflecting:
+            return known = MicrofacetEnergy::reflecting(r);
+        case Kind::coating:
+            return known = MicrofacetEnergy::coating(r, eta);
+        case Kind::transmitting:
+            return known = MicrofacetEnergy::transmitting(r, eta);
+    }
+    return known;
+}
+
+std::shared_ptr<const FuzzTable> SharedTables::fuzz(float roughness) {
+    auto& known = fuzz_[roughness];
+    if (!known) known = std::make_shared<const FuzzTable>(roughness);
+    return known;
+}
+
+namespace {
+
+void add_film(const OpenPbrMaterial& m, const Roughness& base, double index_below, OpenPbrTables& out) {
+    const double thickness = m.thin_film_thickness, weight = m.thin_film_weight, film = m.thin_film_ior;
+    const double above = 1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight;
+    if (m.base_metalness.value > 0)
+        out.metal_film = std::make_shared<const FilmOnMetal>(above, film, thickness, m.specular_color);
+    if (m.transmission_weight.value > 0)
+        out.glass_film =
+            std::make_shared<const FilmOnDielectric>(FilmIndices{1, film, out.eta}, thickness, weight, out.eta, false);
+    if (m.transmission_weight.value == 1 && !m.transmission_weight.texture) return;
+    const FilmIndices n{above, film, index_below * above};
+    const auto table = std::make_shared<const FilmOnDielectric>(n, thickness, weight, out.eta_outside, true);
+    out.dielectric_film = table;
+    for (int c = 0; c < 3; ++c)
+        out.film_energy[size_t(c)] =
+            MicrofacetEnergy::coating(base, [&](double mu) { return static_cast<double>(table->reflectance(mu)[c]); });
+}
+
+}  // namespace
+
+OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& shared) {
     OpenPbrTables out;
     out.textured = m.specular_roughness.texture.has_value();
     const float roughness = out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value);
@@ -104,17 +145,17 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m) {
     out.eta_outside = weighted < 1 ? 1 / weighted : weighted;
     out.eta = static_cast<float>(weighted_index(m.specular_ior, m.specular_weight));
     if (std::fabs(out.eta - 1) < 1e-3f) out.eta = 1.001f;  // nearer to 1 refraction is lost in the rounding to float
-    out.metal = MicrofacetEnergy::reflecting(base);
-    out.dielectric = MicrofacetEnergy::coating(base, out.eta_outside);
-    const bool transmits = m.transmission_weight.value > 0;
-    if (transmits) out.glass = MicrofacetEnergy::transmitting(base, out.eta);
+    out.metal = shared.reflecting(base);
+    out.dielectric = shared.coating(base, out.eta_outside);
+    if (m.transmission_weight.value > 0 && !m.geometry_thin_walled) out.glass = shared.transmitting(base, out.eta);
+    if (m.thin_film_weight > 0) add_film(m, base, weighted, out);
     if (m.coat_weight > 0) {
         const Vec2 alpha = open_pbr_alpha(m.coat_roughness, m.coat_roughness_anisotropy);
-        out.coat = MicrofacetEnergy::coating(table_roughness(alpha, false), out.coat_eta);
+        out.coat = shared.coating(table_roughness(alpha, false), out.coat_eta);
         out.coat_normal_reflectance = fresnel_dielectric(1, out.coat_eta);
         out.coat_inner_reflectance = 1 - (1 - mean_fresnel(out.coat_eta)) / (out.coat_eta * out.coat_eta);
     }
-    if (m.fuzz_weight.value > 0) out.fuzz = std::make_shared<const FuzzTable>(m.fuzz_roughness);
+    if (m.fuzz_weight.value > 0) out.fuzz = shared.fuzz(m.fuzz_roughness);
     return out;
 }
 

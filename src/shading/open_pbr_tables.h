@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
+#include <tuple>
 
 #include "math/vector.h"
 #include "shading/microfacet_energy.h"
+#include "shading/thin_film.h"
 #include "steradian/scene.h"
 
 namespace steradian {
@@ -34,12 +37,39 @@ struct OpenPbrTables {
     std::shared_ptr<const MicrofacetEnergy> metal, dielectric, glass;  ///< of the base; glass: where it transmits
     std::shared_ptr<const MicrofacetEnergy> coat;                      ///< null without a coat
     std::shared_ptr<const FuzzTable> fuzz;                             ///< null without fuzz
+    /// Of a thin film, null without one: over the opaque base (below the coat) with what is lost of each channel, over
+    /// metal, and over glass.
+    std::shared_ptr<const FilmOnDielectric> dielectric_film, glass_film;
+    std::array<std::shared_ptr<const MicrofacetEnergy>, 3> film_energy;
+    std::shared_ptr<const FilmOnMetal> metal_film;
 };
 
 /// α along u and across: section "Microfacet model" of the specification.
 Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept;
 /// Of the base as roughened by the coat.
 float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noexcept;
-OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m);
+
+/// Tables by what they are made of, so that materials which have it in common share them.
+class SharedTables {
+public:
+    std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& r) { return energy(Kind::reflecting, r, 0); }
+    std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& r, double eta) {
+        return energy(Kind::coating, r, eta);
+    }
+    std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& r, double eta) {
+        return energy(Kind::transmitting, r, eta);
+    }
+    std::shared_ptr<const FuzzTable> fuzz(float roughness);
+
+private:
+    enum class Kind : uint8_t { reflecting, coating, transmitting };
+    std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const Roughness& r, double eta);
+
+    using Key = std::tuple<Kind, float, float, bool, bool, double>;
+    std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
+    std::map<float, std::shared_ptr<const FuzzTable>> fuzz_;
+};
+
+OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& shared);
 
 }  // namespace steradian

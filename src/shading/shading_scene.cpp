@@ -6,6 +6,7 @@
 
 #include "math/elementary.h"
 #include "math/warp.h"
+#include "scene/emission.h"
 #include "shading/environment.h"
 #include "shading/fresnel.h"
 #include "shading/light/mesh_emitter.h"
@@ -191,6 +192,8 @@ public:
     void operator()(const AreaLight& light) {
         scene_.instances[index(light.instance)].area_light = current();
         scene_.hides_instances = scene_.hides_instances || !light.visible_to_camera;
+        const MaterialId material = scene_.scene.instances[index(light.instance)].material;
+        data().of_material = !is_black(emission_of(scene_.scene, material).radiance);
         const ShapeId shape = scene_.scene.instances[index(light.instance)].shape;
         std::visit(EmitterBuilder(scene_, light.instance, light.two_sided, data()), scene_.scene.shapes[index(shape)]);
     }
@@ -213,34 +216,24 @@ public:
     explicit MaterialBuilder(ShadingScene& scene) : scene_(scene) {}
 
     void operator()(const ConductorMaterial& m) {
-        data().energy = energy(m.roughness, 0);
+        if (m.roughness.value != Vec2{0, 0}) data().energy = shared_.reflecting(m.roughness);
         if (const auto* complex = std::get_if<ComplexIndex>(&m.reflectance))
             data().mean_fresnel = mean_fresnel_conductor(*complex);
     }
     void operator()(const GlassMaterial& m) {
         const bool visible = std::fabs(m.eta - 1) >= 1e-3f;  // nearer to 1 refraction is lost in the rounding to float
-        if (visible) data().energy = energy(m.roughness, m.eta);
+        if (visible && m.roughness.value != Vec2{0, 0}) data().energy = shared_.transmitting(m.roughness, m.eta);
     }
     void operator()(const OpenPbrMaterial& m) {
-        data().open_pbr = std::make_shared<const OpenPbrTables>(make_open_pbr_tables(m));
+        data().open_pbr = std::make_shared<const OpenPbrTables>(make_open_pbr_tables(m, shared_));
     }
     template <class Other>
     void operator()(const Other&) {}
 
 private:
     ShadingScene::MaterialData& data() { return scene_.materials.back(); }
-
-    /// `eta` 0 for metals.
-    std::shared_ptr<const MicrofacetEnergy> energy(const Roughness& r, float eta) {
-        if (r.value == Vec2{0, 0}) return nullptr;
-        auto& known = known_[Key{r.value.x, r.value.y, r.squared, r.texture.has_value(), eta}];
-        if (!known) known = eta > 0 ? MicrofacetEnergy::transmitting(r, eta) : MicrofacetEnergy::reflecting(r);
-        return known;
-    }
-
-    using Key = std::tuple<float, float, bool, bool, float>;
     ShadingScene& scene_;
-    std::map<Key, std::shared_ptr<const MicrofacetEnergy>> known_;
+    SharedTables shared_;
 };
 
 /// Image textures only: the environment counts its own.

@@ -49,6 +49,7 @@ struct ShadingScene {
         double cos_inner = 1, cos_outer = 1;  ///< for spots
         double one_minus_cos = 0;             ///< for directional lights: of half the angular diameter
         Rgb radiance;                         ///< for directional lights with an angular diameter
+        bool of_material = false;             ///< an area light that emits what its material does (emission.h)
     };
     std::vector<LightData> lights;
     LightSelection light_selection;  ///< how one of them is chosen

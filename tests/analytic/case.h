@@ -53,6 +53,7 @@ std::vector<Case> sun_cases();
 std::vector<Case> specular_cases();
 std::vector<Case> path_cases();
 std::vector<Case> opacity_cases();
+std::vector<Case> emission_cases();
 std::vector<Case> surface_cases();
 std::vector<Case> camera_cases();
 std::vector<Case> transform_cases();

@@ -29,6 +29,7 @@ TEST(ClosedForms, Suns) { expect_all(sun_cases()); }
 TEST(ClosedForms, SpecularSurfaces) { expect_all(specular_cases()); }
 TEST(ClosedForms, Paths) { expect_all(path_cases()); }
 TEST(ClosedForms, Opacity) { expect_all(opacity_cases()); }
+TEST(ClosedForms, Emission) { expect_all(emission_cases()); }
 TEST(ClosedForms, DiffuseSurfaces) { expect_all(surface_cases()); }
 TEST(ClosedForms, CameraAndFilters) { expect_all(camera_cases()); }
 TEST(ClosedForms, TransformsAndScales) { expect_all(transform_cases()); }

@@ -7,7 +7,7 @@ namespace steradian::analytic {
 namespace {
 
 /// A room behind veils: one with a pattern, a fractional one, a mix with an opaque part, a ball; and lamps, a mesh with
-/// a pattern and a disk, that are there in part only.
+/// a pattern and a disk, that are there in part only, and materials that emit.
 SceneText veils() {
     SceneText s;
     s.look({0, 1, 5}, {0, 1, 0}, 27).size(7, 7).integrator("path").depth(3);
@@ -18,6 +18,13 @@ SceneText veils() {
     };
     s.material("lace", veil(R"({"type": "checkerboard", "color0": 0.9, "color1": 0.1, "scale": [5, 5]})"))
         .material("gauze", veil("0.4"))
+        .material("ember", veil("1")
+                               .set("emission_luminance", 6)
+                               .set("coat_weight", 0.8)
+                               .set("coat_color", Color{1, 0.6, 0.3})
+                               .raw("emission_color", R"({"type": "checkerboard", "color0": [1, 0.5, 0.2],
+                               "color1": [0.1, 0.1, 0.6], "scale": [4, 4]})"))
+        .material("spark", Object("mix").raw("materials", R"(["gauze", "ember"])").set("weight", 0.5))
         .material("net", Object("mix").raw("materials", R"(["gauze", "red"])").set("weight", 0.3));
     s.object(ground({0, 0, 0}, 1, 1, "white")).object(ceiling({0, 2, 0}, 1, 1, "white"));
     s.object(rectangle({0, 1, -1}, {1, 0, 0}, {0, 1, 0}, "white"))
@@ -30,6 +37,7 @@ SceneText veils() {
     s.object(mesh({{0.5, 0.1, -0.5}, {0.9, 0.1, -0.4}, {0.7, 0.8, -0.5}}, {{0, 1, 2}}, "lace")
                  .raw("uvs", "[[0, 0], [1, 0], [0.5, 1]]")
                  .set("light", emission({5, 2, 1}, true)));
+    s.object(sphere({-0.6, 1.5, -0.4}, 0.15, "ember")).object(disk({0.8, 0.6, 0.2}, {-1, 0, 0.3}, 0.15, "spark"));
     s.light(point_light({0.2, 0.5, 1.2}, 0.3)).light(environment({0.3, 0.4, 0.6}));
     return s;
 }

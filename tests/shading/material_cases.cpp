@@ -77,10 +77,12 @@ void add_glass(std::vector<MaterialCase>& out) {
 
 void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     const auto add_case = [&](std::string name, const OpenPbrMaterial& m, bool lossless, float peak) {
-        const bool transmits = m.transmission_weight.value > 0;
+        const bool transmits = m.transmission_weight.value > 0 && !m.geometry_thin_walled;
         MaterialCase c{"open_pbr " + std::move(name), m, lossless, peak, transmits ? m.specular_ior : 1};
         c.energy_error = transmits ? 1e-2 : 2e-3;
-        c.reciprocal = m.base_metalness.value == 1 && m.coat_weight == 0 && m.fuzz_weight.value == 0;
+        const bool one_lobe =
+            m.base_metalness.value == 1 || (m.geometry_thin_walled && m.transmission_weight.value == 1);
+        c.reciprocal = one_lobe && m.coat_weight == 0 && m.fuzz_weight.value == 0;
         out.push_back(c);
     };
     OpenPbrMaterial white;
@@ -114,6 +116,23 @@ void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     m = white;
     m.specular_roughness = {1, level}, m.coat_weight = 0.5f, m.coat_roughness = 0.3f;
     add_case("white textured", m, true, 0.09f);
+    m = white;
+    m.thin_film_weight = 1, m.thin_film_thickness = 0.4f, m.thin_film_ior = 2;
+    add_case("white under a film", m, true, 0.25f);
+    m.base_metalness.value = 1, m.base_color.value = {0.9f, 0.6f, 0.4f}, m.thin_film_weight = 0.7f;
+    add_case("metal under a film", m, false, 0.25f);
+    m = white;
+    m.thin_film_weight = 1, m.transmission_weight.value = 1, m.specular_color = {1, 1, 1};
+    add_case("glass under a film", m, true, 0.12f);
+    m = white;
+    m.geometry_thin_walled = true, m.transmission_weight.value = 1;
+    add_case("pane", m, true, 0.25f);
+    m.transmission_color.value = {0.5f, 0.9f, 0.8f}, m.thin_film_weight = 1, m.transmission_weight.value = 0.5f;
+    m.subsurface_weight.value = 0.8f, m.subsurface_scatter_anisotropy = 0.4f;
+    add_case("petal", m, false, 0.25f);
+    m = white;
+    m.geometry_thin_walled = true, m.subsurface_weight.value = 0.7f, m.subsurface_color.value = {1, 1, 1};
+    add_case("white paper", m, true, 0.25f);
 }
 
 /// Of cases that are there already, whose numbers are those of their materials; the last one mixes a mix.

@@ -35,7 +35,7 @@ float material_index(const MaterialCase& c) {
     const auto* glass = std::get_if<GlassMaterial>(&c.material);
     if (glass) return glass->eta;
     const auto* layered = std::get_if<OpenPbrMaterial>(&c.material);
-    return layered ? layered->specular_ior : 1;
+    return layered && !layered->geometry_thin_walled ? layered->specular_ior : 1;
 }
 
 template <class Check>

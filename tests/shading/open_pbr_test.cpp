@@ -65,6 +65,8 @@ TEST(OpenPbr, RandomMaterialsGainNothing) {
                          &m.coat_roughness_anisotropy, &m.coat_darkening})
             some(*x);
         if (i % 3 == 0) some(m.transmission_weight.value);
+        m.geometry_thin_walled = i % 6 == 0;
+        if (i % 4 == 0) some(m.thin_film_weight), some(m.thin_film_thickness);
         for (Rgb* c : {&m.base_color.value, &m.specular_color, &m.subsurface_color.value, &m.fuzz_color.value,
                        &m.coat_color.value, &m.transmission_color.value})
             some(c->r), some(c->g), some(c->b);
@@ -161,6 +163,91 @@ TEST(OpenPbr, OpacityOfMixesGoesByTheirShares) {
     const Rgb f = eval(mix.bsdf(), at_cosine(0.7), at_cosine(0.5)).f_cos;
     EXPECT_NEAR(f.r / f.g, (1 / 7.0) / (6 / 7.0), 1e-5);
     EXPECT_NEAR(f.g, 6 / 7.0 * 0.5 / std::numbers::pi, 1e-4);
+}
+
+/// A smooth pane: both surfaces together, and light goes straight on through them.
+TEST(OpenPbr, ThinWallsAreSheetsOfGlass) {
+    OpenPbrMaterial m;
+    m.geometry_thin_walled = true, m.transmission_weight.value = 1, m.specular_roughness.value = 0;
+    m.transmission_color.value = {1, 0.5f, 0.25f};
+    const OneMaterial material(m);
+    Random random(66);
+    const double r = 0.04, t[] = {1, 0.5, 0.25};
+    for (const double side : {1.0, -1.0})
+        for (int c = 0; c < 3; ++c) {
+            double reflected = 0, passed = 0;
+            int beside = 0;  // the distribution has long tails
+            const int n = 20000;
+            for (int i = 0; i < n; ++i) {
+                const float uc = random.uniform();
+                const auto s = sample(material.bsdf(), {0, 0, static_cast<float>(side)}, uc, random.uniform2());
+                if (!s) continue;
+                beside += std::fabs(s->wi.z) < 0.999;
+                EXPECT_EQ(s->radiance_scale, 1);
+                (s->transmitted ? passed : reflected) += s->weight[c] / n;
+            }
+            EXPECT_LT(beside, 20);
+            const double series = (1 - r) * (1 - r) / (1 - r * r * t[c] * t[c]);
+            EXPECT_NEAR(passed, series * t[c], 1e-2);
+            EXPECT_NEAR(reflected, r + series * r * t[c] * t[c], 1e-2);
+        }
+}
+
+/// Of what the sheet scatters, (1 - g) / 2 goes back and (1 + g) / 2 through.
+TEST(OpenPbr, ThinWallsScatterToBothSides) {
+    OpenPbrMaterial m;
+    m.geometry_thin_walled = true, m.specular_weight = 0, m.subsurface_weight.value = 1;
+    m.subsurface_color.value = {0.8f, 0.4f, 0.2f}, m.subsurface_scatter_anisotropy = 0.5f;
+    const OneMaterial material(m);
+    const Vec3 wo = at_cosine(0.7), up = at_cosine(0.5), down{up.x, up.y, -up.z};
+    for (int c = 0; c < 3; ++c) {
+        const double lambert = m.subsurface_color.value[c] * 0.5 / std::numbers::pi;
+        EXPECT_NEAR(eval(material.bsdf(), wo, up).f_cos[c], 0.25 * lambert, 1e-4);
+        EXPECT_NEAR(eval(material.bsdf(), wo, down).f_cos[c], 0.75 * lambert, 1e-4);
+    }
+}
+
+/// A film without a thickness is none; one with a thickness colours what is reflected as its table says.
+TEST(OpenPbr, FilmsColourTheReflection) {
+    Random random(67);
+    for (const bool metal : {false, true})
+        for (const float thickness : {0.0f, 0.35f}) {
+            OpenPbrMaterial m;
+            m.specular_roughness.value = 0, m.base_metalness.value = metal ? 1.0f : 0.0f;
+            m.base_weight = metal ? 1.0f : 0.0f;
+            const OneMaterial bare(m);
+            m.thin_film_weight = 1, m.thin_film_thickness = thickness;
+            const OneMaterial filmed(m);
+            const double mu = 0.8;
+            const Rgb base = m.base_color.value;
+            const Rgb table = metal ? FilmOnMetal(1, 1.4, thickness, {1, 1, 1}).reflectance(mu, base)
+                                    : FilmOnDielectric({1, 1.4, 1.5, 0}, thickness, 1, 1.5, false).reflectance(mu);
+            for (int c = 0; c < 3; ++c) {
+                const double seen = mean_weight(filmed.bsdf(), at_cosine(mu), c, 4000, random).value;
+                EXPECT_NEAR(seen, table[c], 4e-3);
+                if (thickness > 0) continue;
+                EXPECT_NEAR(seen, mean_weight(bare.bsdf(), at_cosine(mu), c, 4000, random).value, 2e-2);
+            }
+        }
+}
+
+/// Materials that are equally rough share what takes time to make.
+TEST(OpenPbr, EqualRoughnessesShareTheirTables) {
+    OpenPbrMaterial a, b;
+    a.coat_weight = b.coat_weight = 0.5f, a.fuzz_weight.value = b.fuzz_weight.value = 0.5f;
+    a.transmission_weight.value = b.transmission_weight.value = 0.5f;
+    b.base_color.value = {1, 0, 0};
+    OpenPbrMaterial c = b;
+    c.specular_roughness.value = 0.7f;
+    const OneMaterial scene({a, b, c});
+    const auto tables = [&](size_t i) { return *scene.scene.materials[i].open_pbr; };
+    EXPECT_EQ(tables(0).metal, tables(1).metal);
+    EXPECT_EQ(tables(0).dielectric, tables(1).dielectric);
+    EXPECT_EQ(tables(0).glass, tables(1).glass);
+    EXPECT_EQ(tables(0).coat, tables(2).coat);
+    EXPECT_EQ(tables(0).fuzz, tables(2).fuzz);
+    EXPECT_NE(tables(0).metal, tables(2).metal);
+    EXPECT_NE(tables(0).glass, tables(2).glass);
 }
 
 /// The table against sampling, and its limit.

@@ -40,6 +40,7 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     input("transmission_color", m.transmission_color);
     input("subsurface_weight", m.subsurface_weight);
     input("subsurface_color", m.subsurface_color);
+    number("subsurface_scatter_anisotropy", m.subsurface_scatter_anisotropy, {-1, 1});
     input("fuzz_weight", m.fuzz_weight);
     input("fuzz_color", m.fuzz_color);
     number("fuzz_roughness", m.fuzz_roughness);
@@ -49,7 +50,13 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("coat_roughness_anisotropy", m.coat_roughness_anisotropy);
     number("coat_ior", m.coat_ior, {1.01, 3});
     number("coat_darkening", m.coat_darkening);
+    number("thin_film_weight", m.thin_film_weight);
+    number("thin_film_thickness", m.thin_film_thickness, {0, 10});
+    number("thin_film_ior", m.thin_film_ior, {1, 3});
+    number("emission_luminance", m.emission_luminance, {0, 1e9});
+    input("emission_color", m.emission_color);
     input("geometry_opacity", m.geometry_opacity);
+    m.geometry_thin_walled = material.boolean_or("geometry_thin_walled", m.geometry_thin_walled);
     return m;
 }
 

@@ -5,6 +5,7 @@
 #include "shading/bsdf/local.h"
 #include "shading/bsdf/specular.h"
 #include "shading/texture.h"
+#include "shading/thin_film.h"
 
 namespace steradian {
 
@@ -36,8 +37,10 @@ inline Rgb fresnel(const ConductorBsdf& lobe, double cosine) {
     const double mu = clamp_to(cosine, 0.0, 1.0), m2 = (1 - mu) * (1 - mu);
     const Rgb f = fresnel_schlick(mu, schlick.normal, schlick.grazing);
     const auto dip = static_cast<float>(mu * m2 * m2 * m2);
-    return {max_of(f.r - schlick.dip.r * dip, 0.0f), max_of(f.g - schlick.dip.g * dip, 0.0f),
-            max_of(f.b - schlick.dip.b * dip, 0.0f)};
+    const Rgb bare{max_of(f.r - schlick.dip.r * dip, 0.0f), max_of(f.g - schlick.dip.g * dip, 0.0f),
+                   max_of(f.b - schlick.dip.b * dip, 0.0f)};
+    if (!lobe.film) return bare;
+    return bare * (1 - lobe.film_weight) + lobe.film->reflectance(mu, schlick.normal) * lobe.film_weight;
 }
 
 /// What part of the light leaves after more than one bounce when facets reflect all of it: also the probability of

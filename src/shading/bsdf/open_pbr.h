@@ -6,6 +6,7 @@
 #include "shading/bsdf/conductor.h"
 #include "shading/bsdf/diffuse.h"
 #include "shading/bsdf/rough_glass.h"
+#include "shading/bsdf/thin_wall.h"
 #include "shading/mixture.h"
 #include "shading/open_pbr_tables.h"
 
@@ -18,7 +19,7 @@ inline Microfacets open_pbr_facets(float roughness, float anisotropy, float leve
 
 /// The metal: Schlick's approximation with a dip at 82 degrees ("F82-tint").
 inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Microfacets facets,
-                                    const MicrofacetEnergy* energy) {
+                                    const MicrofacetEnergy* energy, const FilmOnMetal* film) {
     constexpr double kMu = 1.0 / 7, kRest = 6.0 / 7;
     const double schlick = kRest * kRest * kRest * kRest * kRest;
     ConductorBsdf::Schlick f{color, {1, 1, 1}, {}};
@@ -35,6 +36,11 @@ inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Microfa
     out.tint = {w, w, w};
     out.facets = facets;
     out.energy = energy;
+    if (film) {
+        out.film = film;
+        out.film_weight = m.thin_film_weight;
+        out.mean_fresnel = out.mean_fresnel * (1 - out.film_weight) + film->mean(color) * out.film_weight;
+    }
     return out;
 }
 
@@ -63,14 +69,17 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     const float level = tables.textured ? roughness : 1;
     const Microfacets facets = open_pbr_facets(roughness, m.specular_roughness_anisotropy, level);
     out.metalness = number(m.base_metalness);
-    out.metal = open_pbr_metal(m, base, facets, tables.metal.get());
+    out.metal = open_pbr_metal(m, base, facets, tables.metal.get(), tables.metal_film.get());
     out.transmission = number(m.transmission_weight);
-    out.glass = {tables.eta, m.specular_color, color(m.transmission_color), facets, tables.glass.get()};
+    out.glass = {tables.eta, m.specular_color,   color(m.transmission_color),
+                 facets,     tables.glass.get(), tables.glass_film.get()};
     out.specular_color = m.specular_color;
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
     out.subsurface = number(m.subsurface_weight);
     out.subsurface_color = color(m.subsurface_color);
+    out.thin_walled = m.geometry_thin_walled;
+    if (out.thin_walled) out.passed_share = (1 + m.subsurface_scatter_anisotropy) / 2;
     out.coat_weight = m.coat_weight;
     out.coat_color = color(m.coat_color);
     if (tables.coat) {
@@ -100,7 +109,8 @@ inline bool lobe_has_direction(const OpenPbrBsdf& lobe) {
 /// What is left for each lobe of the light from wo, as a factor of the lobe; and with what probability it is sampled.
 struct OpenPbrShares {
     double fuzz = 0, coat = 0, metal = 0, dielectric = 0, diffuse = 0, glass = 0;
-    double p_fuzz = 0, p_coat = 0, p_metal = 0, p_dielectric = 0, p_diffuse = 0, p_glass = 0;
+    double p_fuzz = 0, p_coat = 0, p_metal = 0, p_dielectric = 0, p_diffuse = 0, p_glass = 0, p_through = 0;
+    Rgb diffuse_tint{1, 1, 1};  ///< by a film: what it lets pass, over its mean
 
     OpenPbrShares(const OpenPbrBsdf& lobe, Vec3d wo) {
         const OpenPbrTables& t = *lobe.tables;
@@ -120,24 +130,40 @@ struct OpenPbrShares {
         left -= metal;
         glass = left * lobe.transmission;
         dielectric = left - glass;
-        const double below = t.dielectric->loss(lobe.metal.facets, wo);
+        double below = t.dielectric->loss(lobe.metal.facets, wo);
+        if (t.dielectric_film) below = pass_film(t, lobe.metal.facets, wo);
         diffuse = dielectric * below;
         p_metal = metal * max_component(lobe.metal.mean_fresnel * lobe.metal.tint);
         p_glass = glass;
         p_dielectric = dielectric * (1 - below) * max_component(lobe.specular_color);
-        p_diffuse = diffuse * ((1 - lobe.subsurface) * max_component(lobe.diffuse) +
-                               lobe.subsurface * max_component(lobe.subsurface_color));
-        const double sum = p_fuzz + p_coat + p_metal + p_dielectric + p_diffuse + p_glass;
+        const double scattered = lobe.subsurface * max_component(lobe.subsurface_color);
+        p_through = diffuse * lobe.passed_share * scattered;
+        p_diffuse = diffuse * ((1 - lobe.subsurface) * max_component(lobe.diffuse) + scattered) - p_through;
+        const double sum = p_fuzz + p_coat + p_metal + p_dielectric + p_diffuse + p_through + p_glass;
         const double scale = sum > 0 ? 1 / sum : 0;
-        for (double* p : {&p_fuzz, &p_coat, &p_metal, &p_dielectric, &p_diffuse, &p_glass}) *p *= scale;
+        for (double* p : {&p_fuzz, &p_coat, &p_metal, &p_dielectric, &p_diffuse, &p_through, &p_glass}) *p *= scale;
+    }
+
+private:
+    /// The mean over the channels of what passes.
+    double pass_film(const OpenPbrTables& t, const Microfacets& facets, Vec3d wo) {
+        const double r = t.film_energy[0]->loss(facets, wo), g = t.film_energy[1]->loss(facets, wo),
+                     b = t.film_energy[2]->loss(facets, wo), mean = (r + g + b) / 3;
+        if (mean > 0)
+            diffuse_tint = {static_cast<float>(r / mean), static_cast<float>(g / mean), static_cast<float>(b / mean)};
+        return mean;
     }
 };
 
 /// One bounce off the facets of a dielectric; what is missing passes.
-inline LocalEval eval_dielectric(const Microfacets& facets, double eta, Vec3d wo, Vec3d wi) {
+inline LocalEval eval_dielectric(const Microfacets& facets, double eta, const FilmOnDielectric* film, Vec3d wo,
+                                 Vec3d wi) {
     const Ggx ggx = facets.ggx();
     const Vec3d h = normalize(wo + wi);
     const double d = ggx.density(h) / 4;
+    if (film)
+        return {film->reflectance(dot(wo, h)) * static_cast<float>(d * ggx.masking_over_cosine(wo, wi)),
+                d * ggx.visible_over_projected(wo)};
     const auto f = static_cast<float>(fresnel_dielectric(dot(wo, h), eta) * d * ggx.masking_over_cosine(wo, wi));
     return {{f, f, f}, d * ggx.visible_over_projected(wo)};
 }
@@ -149,7 +175,8 @@ inline Rgb eval_open_pbr_diffuse(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi) {
     for (int c = 0; c < 3; ++c) {
         const double matte = lobe.diffuse_roughness > 0 ? model.pi_f(lobe.diffuse[c], wo.z, wi.z, s, lost)
                                                         : static_cast<double>(lobe.diffuse[c]);
-        const double mixed = matte + (lobe.subsurface_color[c] - matte) * lobe.subsurface;
+        const double scattered = lobe.subsurface_color[c] * (1 - static_cast<double>(lobe.passed_share));
+        const double mixed = matte + (scattered - matte) * lobe.subsurface;
         out[c] = static_cast<float>(mixed * wi.z / std::numbers::pi);
     }
     return out;
@@ -185,16 +212,22 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
     const Rgb below = coat_tint(lobe, wo, wi);
     if (wi.z > 0) {
         if (s.p_fuzz > 0) add({t.fuzz->eval(wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz, lobe.fuzz_color);
-        if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, wo, wi), s.coat, s.p_coat, {1, 1, 1});
+        if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, nullptr, wo, wi), s.coat, s.p_coat, {1, 1, 1});
         if (s.p_metal > 0) add(eval_local(lobe.metal, wo, wi, outside), s.metal, s.p_metal, below);
         if (s.p_dielectric > 0)
-            add(eval_dielectric(lobe.metal.facets, t.eta_outside, wo, wi), s.dielectric, s.p_dielectric,
-                lobe.specular_color * below);
+            add(eval_dielectric(lobe.metal.facets, t.eta_outside, t.dielectric_film.get(), wo, wi), s.dielectric,
+                s.p_dielectric, lobe.specular_color * below);
         if (s.p_diffuse > 0)
             add({eval_open_pbr_diffuse(lobe, wo, wi), open_pbr_diffuse_pdf(lobe, wo.z, wi.z)}, s.diffuse, s.p_diffuse,
-                below);
+                below * s.diffuse_tint);
+    } else if (s.p_through > 0) {
+        const auto cosine = static_cast<float>(-wi.z / std::numbers::pi);
+        const Rgb f = lobe.subsurface_color * (lobe.subsurface * lobe.passed_share * cosine);
+        add({f, -wi.z / std::numbers::pi}, s.diffuse, s.p_through, below * s.diffuse_tint);
     }
-    if (s.p_glass > 0) {
+    if (s.p_glass > 0 && lobe.thin_walled) {
+        add(eval_wall(lobe.glass, *t.metal, wo, wi), s.glass, s.p_glass, below);
+    } else if (s.p_glass > 0) {
         const LocalEval glass = eval_local(lobe.glass, wo, wi, outside);
         out.radiance_scale = glass.radiance_scale;
         add(glass, s.glass, s.p_glass, below);
@@ -223,7 +256,15 @@ inline std::optional<Vec3d> sample_local(const OpenPbrBsdf& lobe, Vec3d wo, bool
     if (chooses(s.p_coat)) return off_facets(lobe.coat);
     if (chooses(s.p_metal)) return above(sample_local(lobe.metal, wo, outside, static_cast<float>(left), u));
     if (chooses(s.p_dielectric)) return off_facets(lobe.metal.facets);
-    if (chooses(s.p_glass)) return sample_local(lobe.glass, wo, outside, static_cast<float>(left), u);
+    if (chooses(s.p_glass)) {
+        const auto again = static_cast<float>(left);
+        return lobe.thin_walled ? sample_wall(lobe.glass, *lobe.tables->metal, wo, again, u)
+                                : sample_local(lobe.glass, wo, outside, again, u);
+    }
+    if (chooses(s.p_through)) {
+        const Vec3d wi = warp::cosine_hemisphere(u);
+        return Vec3d{wi.x, wi.y, -wi.z};
+    }
     if (!(s.p_diffuse > 0)) return std::nullopt;
     const double uniform = 0.5 * lobe.diffuse_roughness * (1 - wo.z);
     return left < uniform * s.p_diffuse ? warp::hemisphere(u) : warp::cosine_hemisphere(u);

@@ -10,11 +10,41 @@
 #pragma once
 
 #include "shading/bsdf/local.h"
+#include "shading/thin_film.h"
 
 namespace steradian {
 
 inline bool lobe_is_specular(const RoughGlassBsdf&) { return false; }
 inline bool lobe_has_direction(const RoughGlassBsdf& lobe) { return lobe.facets.alpha_x != lobe.facets.alpha_y; }
+
+/// Of light from outside, at the cosine to a facet.
+inline Rgb outside_reflectance(const RoughGlassBsdf& lobe, double cosine) {
+    if (lobe.film) return lobe.film->reflectance(cosine);
+    const auto f = static_cast<float>(fresnel_dielectric(cosine, static_cast<double>(lobe.eta)));
+    return {f, f, f};
+}
+
+/// With a film, from either side: what it reflects is that of the other side of the refracted light.
+inline Rgb film_reflectance(const RoughGlassBsdf& lobe, double cosine, double eta, bool outside) {
+    if (outside) return lobe.film->reflectance(cosine);
+    const double squared = 1 - (1 - cosine) * (1 + cosine) / (eta * eta);
+    return squared > 0 ? lobe.film->reflectance(std::sqrt(squared)) : Rgb{1, 1, 1};
+}
+
+/// The probability that a facet reflects, and the colours that go with either choice.
+struct FacetChoice {
+    double reflects = 0;
+    Rgb reflected{1, 1, 1}, passed{1, 1, 1};
+};
+inline FacetChoice facet_choice(const RoughGlassBsdf& lobe, double cosine, double eta, bool outside) {
+    if (!lobe.film) return {fresnel_dielectric(cosine, eta)};
+    const Rgb r = film_reflectance(lobe, cosine, eta, outside);
+    const float mean = (r.r + r.g + r.b) / 3;
+    FacetChoice out{static_cast<double>(mean)};
+    if (mean > 0) out.reflected = r / mean;
+    if (mean < 1) out.passed = (Rgb{1, 1, 1} + r * -1) / (1 - mean);
+    return out;
+}
 
 /// What the wide lobe needs to know, seen from a side: eta is the index of the far side over that of the near one.
 struct RoughGlassLosses {
@@ -55,15 +85,21 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
     const Rgb tint = reflected ? lobe.reflectance : lobe.transmittance;
     const double radiance_scale = reflected ? 1 : 1 / (l.eta * l.eta);
     double f_cos = 0, pdf = 0;
+    Rgb by_film{};
     if (const auto h = facet_between(wo, wi, l.eta)) {
         const Ggx ggx = lobe.facets.ggx();
-        const double oh = dot(wo, *h), ih = dot(wi, *h), reflectance = fresnel_dielectric(oh, l.eta);
+        const double oh = dot(wo, *h), ih = dot(wi, *h);
+        const FacetChoice choice = facet_choice(lobe, oh, l.eta, outside);
         // The solid angle of facets for that of wi, times o · h: Walter et al., equations 14 and 17.
         const double denominator = ih + oh / l.eta;
         const double jacobian = reflected ? 0.25 : oh * -ih / (denominator * denominator);
-        const double facets = (reflected ? reflectance : 1 - reflectance) * ggx.density(*h) * jacobian;
+        const double facets = (reflected ? choice.reflects : 1 - choice.reflects) * ggx.density(*h) * jacobian;
         f_cos = facets * ggx.masking_over_cosine(wo, wi);
         pdf = (1 - l.lost) * facets * ggx.visible_over_projected(wo);
+        if (lobe.film) {
+            by_film = (reflected ? choice.reflected : choice.passed) * static_cast<float>(f_cos * radiance_scale);
+            f_cos = 0;
+        }
     }
     if (l.lost > 0) {
         const double share = reflected ? l.reflected_share : 1 - l.reflected_share;
@@ -74,7 +110,8 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         f_cos += l.lost * share * from_wi * cosine / std::numbers::pi;
         pdf += l.lost * share * WideLobe(lobe.facets).pdf(cosine);
     }
-    return {tint * static_cast<float>(f_cos * radiance_scale), pdf, radiance_scale};
+    const auto grey = static_cast<float>(f_cos * radiance_scale);
+    return {lobe.film ? tint * (Rgb{grey, grey, grey} + by_film) : tint * grey, pdf, radiance_scale};
 }
 
 inline std::optional<Vec3d> sample_local(const RoughGlassBsdf& lobe, Vec3d wo, bool outside, float uc, Vec2 u) {
@@ -84,7 +121,7 @@ inline std::optional<Vec3d> sample_local(const RoughGlassBsdf& lobe, Vec3d wo, b
         return uc < l.lost * l.reflected_share ? wi : Vec3d{wi.x, wi.y, -wi.z};
     }
     const Vec3d h = lobe.facets.ggx().sample_visible(wo, u);
-    if ((uc - l.lost) / (1 - l.lost) < fresnel_dielectric(dot(wo, h), l.eta)) {
+    if ((uc - l.lost) / (1 - l.lost) < facet_choice(lobe, dot(wo, h), l.eta, outside).reflects) {
         const Vec3d wi = reflect(wo, h);
         return wi.z > 0 ? std::optional(wi) : std::nullopt;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "shading/emission.h"
 #include "shading/light/disk_emitter.h"
 #include "shading/light/light_kind.h"
 #include "shading/light/mesh_emitter.h"
@@ -38,9 +39,13 @@ inline std::optional<LightSample> sample_kind(const AreaLight& light, const Ligh
     if (!towards || !(pdf > 0) || !is_finite(pdf)) return std::nullopt;
     const std::optional<Ray> ray = shadow_ray_to_surface(from, context, light.instance, *at, towards->wi);
     if (!ray) return std::nullopt;
+    const bool cut_out = context.scene.has_cut_outs && context.scene.is_cut_out(index(light.instance));
     Rgb radiance = light.radiance;
-    if (context.scene.has_cut_outs && context.scene.is_cut_out(index(light.instance)))
-        radiance = radiance * opacity_at(context.scene, point_of(context, light.instance, from, *at));
+    if (cut_out || context.data().of_material) {
+        const SurfacePoint point = point_of(context, light.instance, from, *at);
+        if (context.data().of_material) radiance = material_emission(context.scene, point, -towards->wi);
+        if (cut_out) radiance = radiance * opacity_at(context.scene, point);
+    }
     return LightSample{towards->wi, radiance, pdf, *ray};
 }
 
