@@ -1,7 +1,7 @@
-// A film whose thickness is of the order of a wavelength, on a dielectric or a metal: what it reflects, as colours. Light
-// that bounces within the film interferes (Airy's sum, over both polarisations, with complex indices: Born & Wolf,
-// "Principles of Optics", sections 1.6.4 and 14.4), which is integrated over the spectrum when a scene is made: the
-// tables take the place of the fits of L. Belcour and P. Barla, "A Practical Extension to Microfacet Theory for the
+// A film whose thickness is of the order of a wavelength, on a dielectric or a metal: what it reflects, as colours.
+// Light that bounces within the film interferes (Airy's sum, over both polarisations, with complex indices: Born &
+// Wolf, "Principles of Optics", sections 1.6.4 and 14.4), which is integrated over the spectrum when a scene is made:
+// the tables take the place of the fits of L. Belcour and P. Barla, "A Practical Extension to Microfacet Theory for the
 // Modeling of Varying Iridescence", 2017.
 //
 // Colours are those of white things in white light: what reflects all wavelengths alike is grey. Channels beyond what

@@ -30,8 +30,8 @@ std::vector<Case> emission_cases() {
     };
     out.push_back(whole("emission_seen", "L", seen(3, glowing()), kGlow));
     out.push_back(whole("emission_from_behind", "0: a body shines outwards", seen(-3, glowing()), 0.0));
-    out.push_back(whole("emission_thin_wall_from_behind", "L", seen(-3, glowing().set("geometry_thin_walled", true)),
-                        kGlow));
+    out.push_back(
+        whole("emission_thin_wall_from_behind", "L", seen(-3, glowing().set("geometry_thin_walled", true)), kGlow));
     const Object coated = glowing().set("coat_weight", 1).set("coat_color", Color{1, 0.25, 0.25});
     Case coat = whole("emission_under_coat", "(1 - F) √c L, head-on",
                       empty_scene({0, 0, 3}, {0, 0, 0}).depth(0).material("lamp", coated).object(lamp()),

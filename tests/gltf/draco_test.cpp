@@ -34,9 +34,11 @@ std::unique_ptr<draco::Mesh> bumpy(Ids& ids) {
                 std::array<Vec2, 3> uv;
                 for (size_t c = 0; c < 3; ++c) {
                     const int i = x + corners[2 * c], j = y + corners[2 * c + 1];
-                    p[c] = {static_cast<float>(i) * 0.1f, static_cast<float>(j) * 0.1f, static_cast<float>(i * j % 7) * 0.05f};
+                    p[c] = {static_cast<float>(i) * 0.1f, static_cast<float>(j) * 0.1f,
+                            static_cast<float>(i * j % 7) * 0.05f};
                     n[c] = normalize(Vec3{static_cast<float>(i - 6), static_cast<float>(j - 6), j % 2 ? 5.0f : -2.0f});
-                    uv[c] = {static_cast<float>(i) / kSide + (x < kSide / 2 ? 0.0f : 1.5f), static_cast<float>(j) / kSide};
+                    uv[c] = {static_cast<float>(i) / kSide + (x < kSide / 2 ? 0.0f : 1.5f),
+                             static_cast<float>(j) / kSide};
                 }
                 const draco::FaceIndex f(face++);
                 b.SetAttributeValuesForFace(ids.position, f, &p[0], &p[1], &p[2]);
@@ -85,11 +87,11 @@ std::string file(const Compressed& c, const std::string& index_type = "5123", co
         const int t = b.raw_accessor("\"componentType\": 5126, \"type\": \"VEC2\", \"count\": " + count);
         const int k = b.raw_accessor("\"componentType\": " + index_type +
                                      ", \"type\": \"SCALAR\", \"count\": " + std::to_string(3 * c.faces));
-        primitives += std::string(i ? "," : "") + "{\"attributes\": {\"POSITION\": " + number(p) + ", \"NORMAL\": " + number(n) +
-                      ", \"TEXCOORD_0\": " + number(t) + "}, \"indices\": " + number(k) + more +
-                      ", \"extensions\": {\"KHR_draco_mesh_compression\": {\"bufferView\": " + view +
-                      ", \"attributes\": {\"POSITION\": " + number(c.ids.position) + ", \"NORMAL\": " +
-                      number(c.ids.normal) + ", \"TEXCOORD_0\": " + number(c.ids.uv) + "}}}}";
+        primitives += std::string(i ? "," : "") + "{\"attributes\": {\"POSITION\": " + number(p) +
+                      ", \"NORMAL\": " + number(n) + ", \"TEXCOORD_0\": " + number(t) + "}, \"indices\": " + number(k) +
+                      more + ", \"extensions\": {\"KHR_draco_mesh_compression\": {\"bufferView\": " + view +
+                      ", \"attributes\": {\"POSITION\": " + number(c.ids.position) +
+                      ", \"NORMAL\": " + number(c.ids.normal) + ", \"TEXCOORD_0\": " + number(c.ids.uv) + "}}}}";
     }
     return b.binary("\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"meshes\": [{\"primitives\": [" +
                     primitives + "]}], \"nodes\": [{\"mesh\": 0}]");
@@ -170,7 +172,8 @@ TEST(GltfDraco, LiesAreRefused) {
     expect_refused(with([](Compressed& c) { ++c.points; }), "/accessors/0", "its Draco data");
     expect_refused(with([](Compressed& c) { ++c.faces; }), "/accessors/3", "its Draco data");
     expect_refused(with([](Compressed& c) { c.ids.normal = 9; }), extension + "/attributes/NORMAL", "no attribute 9");
-    expect_refused(with([](Compressed& c) { c.ids.normal = c.ids.uv; }), extension + "/attributes/NORMAL", "3 times FLOAT");
+    expect_refused(with([](Compressed& c) { c.ids.normal = c.ids.uv; }), extension + "/attributes/NORMAL",
+                   "3 times FLOAT");
     expect_refused(with([](Compressed& c) { c.bytes[0] = 'd'; }), extension, "does not hold Draco");
     expect_refused(with([](Compressed& c) { c.bytes[6] = 1; }), extension, "version 2.1");
     expect_refused(with([](Compressed& c) { c.bytes[7] = 0; }), extension, "point cloud");

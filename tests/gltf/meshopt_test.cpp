@@ -42,7 +42,8 @@ struct Grid {
 Grid grid(uint32_t n) {
     Grid out;
     for (uint32_t i = 0; i < n * n; ++i)
-        out.positions.push_back({static_cast<float>(i % n), static_cast<float>(i / n) * 0.3f, static_cast<float>(i * 7 % 5)});
+        out.positions.push_back(
+            {static_cast<float>(i % n), static_cast<float>(i / n) * 0.3f, static_cast<float>(i * 7 % 5)});
     for (uint32_t y = 0; y + 1 < n; ++y)
         for (uint32_t x = 0; x + 1 < n; ++x) {
             const uint32_t a = y * n + x;
@@ -59,16 +60,16 @@ std::vector<uint32_t> from_smallest(std::vector<uint32_t> indices) {
 
 std::string compressed_grid(const Grid& g, bool sequence, bool narrow) {
     GltfBuilder b;
-    const std::string indices = sequence ? encoded_sequence(g.indices, g.positions.size())
-                                         : encoded_triangles(g.indices, g.positions.size());
+    const std::string indices =
+        sequence ? encoded_sequence(g.indices, g.positions.size()) : encoded_triangles(g.indices, g.positions.size());
     const int p = b.compressed_view(encoded_vertices(g.positions), "ATTRIBUTES", g.positions.size(), 12);
     const int i = b.compressed_view(indices, sequence ? "INDICES" : "TRIANGLES", g.indices.size(), narrow ? 2 : 4);
-    const int positions = b.raw_accessor("\"bufferView\": " + std::to_string(p) +
-                                         ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": " +
-                                         std::to_string(g.positions.size()));
-    const int corners = b.raw_accessor("\"bufferView\": " + std::to_string(i) + ", \"componentType\": " +
-                                       (narrow ? "5123" : "5125") + ", \"type\": \"SCALAR\", \"count\": " +
-                                       std::to_string(g.indices.size()));
+    const int positions = b.raw_accessor(
+        "\"bufferView\": " + std::to_string(p) +
+        ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": " + std::to_string(g.positions.size()));
+    const int corners =
+        b.raw_accessor("\"bufferView\": " + std::to_string(i) + ", \"componentType\": " + (narrow ? "5123" : "5125") +
+                       ", \"type\": \"SCALAR\", \"count\": " + std::to_string(g.indices.size()));
     return b.binary(one_mesh(positions, ", \"indices\": " + std::to_string(corners)) +
                     ", \"extensionsRequired\": [\"EXT_meshopt_compression\"]");
 }
@@ -91,7 +92,8 @@ TEST(GltfMeshopt, ABufferForOthersNeedsNoData) {
     // As the extension writes it for readers that lack it: the views refer to a second buffer, which has no data.
     std::string text = compressed_grid(grid(3), false, false);
     const std::string first = "{\"buffer\": 0, \"byteLength\"", second = "{\"buffer\": 7, \"byteLength\"";
-    for (size_t at = text.find(first); at != text.npos; at = text.find(first, at)) text.replace(at, first.size(), second);
+    for (size_t at = text.find(first); at != text.npos; at = text.find(first, at))
+        text.replace(at, first.size(), second);
     EXPECT_EQ(good_gltf(text).scene.meshes.at(0).positions.size(), 9u);
 }
 
@@ -106,8 +108,10 @@ void expect_fault(std::string from, std::string to, std::string_view pointer, st
 TEST(GltfMeshopt, LiesAreRefused) {
     const std::string extension = "/bufferViews/0/extensions/EXT_meshopt_compression";
     expect_fault("\"byteLength\": 300", "\"byteLength\": 299", "/bufferViews/0/byteLength", "300 when decompressed");
-    expect_fault("\"count\": 25, \"mode", "\"count\": 24, \"mode", "/bufferViews/0/byteLength", "288 when decompressed");
-    expect_fault("\"byteStride\": 12, \"count", "\"byteStride\": 10, \"count", extension + "/byteStride", "multiple of 4");
+    expect_fault("\"count\": 25, \"mode", "\"count\": 24, \"mode", "/bufferViews/0/byteLength",
+                 "288 when decompressed");
+    expect_fault("\"byteStride\": 12, \"count", "\"byteStride\": 10, \"count", extension + "/byteStride",
+                 "multiple of 4");
     expect_fault("\"mode\": \"ATTRIBUTES\"", "\"mode\": \"INDICES\"", extension + "/byteStride", "2 or 4");
     expect_fault("\"mode\": \"ATTRIBUTES\"", "\"mode\": \"LIES\"", extension + "/mode", "LIES");
     expect_fault("\"count\": 96, \"mode", "\"count\": 95, \"mode",
@@ -201,7 +205,8 @@ TEST(GltfMeshopt, ExponentialFilter) {
     std::mt19937 random(3);
     std::vector<float> values{0, 1, -1, 0.5f, -3.75f, 1e-20f, 1e20f};
     for (int i = 0; i < 2000; ++i)
-        values.push_back(std::ldexp(static_cast<float>(random() % 2001) / 1000 - 1, static_cast<int>(random() % 40) - 20));
+        values.push_back(
+            std::ldexp(static_cast<float>(random() % 2001) / 1000 - 1, static_cast<int>(random() % 40) - 20));
     while (values.size() % 3) values.push_back(0);
     std::vector<uint32_t> ours(values.size());
     meshopt_encodeFilterExp(ours.data(), values.size() / 3, 12, 20, values.data());
@@ -219,7 +224,9 @@ TEST(GltfMeshopt, ExponentialFilter) {
 
 TEST(GltfMeshopt, FiltersStandEverything) {
     std::mt19937 random(4);
-    for (const auto& [filter, stride] : {std::pair(Filter::octahedral, 4u), {Filter::octahedral, 8u}, {Filter::quaternion, 8u},
+    for (const auto& [filter, stride] : {std::pair(Filter::octahedral, 4u),
+                                         {Filter::octahedral, 8u},
+                                         {Filter::quaternion, 8u},
                                          {Filter::exponential, 16u}}) {
         std::vector<uint32_t> noise(4096);
         for (uint32_t& x : noise) x = random() % 4 ? static_cast<uint32_t>(random()) : 0;

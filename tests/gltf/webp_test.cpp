@@ -86,7 +86,8 @@ TEST(GltfWebp, Ktx2SaysWhatToDo) {
     EXPECT_NE(loaded.error().message.find("KTX2"), std::string::npos);
     EXPECT_NE(loaded.error().hint.find("ktxdecompress"), std::string::npos);
     // With another image beside it, that one is used and the rest is reported.
-    const LoadedScene other = good_gltf(textured({png_file(1, 1, 8, 0, std::string(2, '\0'))}, "\"source\": 0, " + ktx));
+    const LoadedScene other =
+        good_gltf(textured({png_file(1, 1, 8, 0, std::string(2, '\0'))}, "\"source\": 0, " + ktx));
     EXPECT_TRUE(has(other.fidelity, "KHR_texture_basisu"));
     expect_refused("{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_texture_basisu\"]}",
                    "/extensionsRequired/0", "KHR_texture_basisu");

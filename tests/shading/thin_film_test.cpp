@@ -40,8 +40,8 @@ double by_partial_waves(double mu, const FilmIndices& n, double thickness, doubl
     return out;
 }
 
-const FilmIndices kStacks[] = {{1, 1.4, 1.5, 0}, {1, 1.33, 1, 0}, {1, 2.2, 1.5, 0}, {1.6, 1.3, 1.5, 0},
-                               {1, 1.5, 0.2, 3}, {1, 1.4, 2.9, 3}};
+const FilmIndices kStacks[] = {{1, 1.4, 1.5, 0},   {1, 1.33, 1, 0},  {1, 2.2, 1.5, 0},
+                               {1.6, 1.3, 1.5, 0}, {1, 1.5, 0.2, 3}, {1, 1.4, 2.9, 3}};
 
 TEST(ThinFilm, IsTheSumOfItsPartialWaves) {
     for (const FilmIndices& n : kStacks)

@@ -86,9 +86,9 @@ draco::Status decode(std::span<const std::byte> bytes, const Afford& afford, dra
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     draco::DecoderOptions options;
-    for (const auto type : {draco::GeometryAttribute::POSITION, draco::GeometryAttribute::NORMAL,
-                            draco::GeometryAttribute::COLOR, draco::GeometryAttribute::TEX_COORD,
-                            draco::GeometryAttribute::GENERIC})
+    for (const auto type :
+         {draco::GeometryAttribute::POSITION, draco::GeometryAttribute::NORMAL, draco::GeometryAttribute::COLOR,
+          draco::GeometryAttribute::TEX_COORD, draco::GeometryAttribute::GENERIC})
         options.SetAttributeBool(type, "skip_attribute_transform", true);
     if (bytes[kMethod] == std::byte{draco::MESH_EDGEBREAKER_ENCODING})
         return BoundedEdgebreaker(afford).Decode(options, &buffer, &mesh);
@@ -262,10 +262,9 @@ void Accessors::decompress(const Object& primitive) {
             context_.source.fail(member.value.offset(), "the Draco data have no attribute " + std::to_string(id));
         put(*number, mesh.num_points(), [&](const Accessor& accessor, std::byte* out) {
             if (!read_attribute(mesh, *attribute, accessor, out))
-                context_.source.fail(member.value.offset(),
-                                     "the Draco attribute is not of the accessor's type: " +
-                                         std::to_string(accessor.components) + " times " +
-                                         std::string(name_of(accessor.component)));
+                context_.source.fail(member.value.offset(), "the Draco attribute is not of the accessor's type: " +
+                                                                std::to_string(accessor.components) + " times " +
+                                                                std::string(name_of(accessor.component)));
         });
     }
     const auto indices = primitive.reference("indices", context_.tables.accessors);

@@ -102,10 +102,10 @@ std::optional<std::string> decode(const Header& h, std::span<const std::byte> co
     std::string out(h.bytes(), '\0');
     const auto* from = reinterpret_cast<const unsigned char*>(compressed.data());
     const size_t size = compressed.size();
-    const int fault = h.mode == Mode::attributes
-                          ? meshopt_decodeVertexBuffer(out.data(), h.count, h.stride, from, size)
-                      : h.mode == Mode::triangles ? meshopt_decodeIndexBuffer(out.data(), h.count, h.stride, from, size)
-                                                  : meshopt_decodeIndexSequence(out.data(), h.count, h.stride, from, size);
+    const int fault = h.mode == Mode::attributes ? meshopt_decodeVertexBuffer(out.data(), h.count, h.stride, from, size)
+                      : h.mode == Mode::triangles
+                          ? meshopt_decodeIndexBuffer(out.data(), h.count, h.stride, from, size)
+                          : meshopt_decodeIndexSequence(out.data(), h.count, h.stride, from, size);
     if (fault != 0) return std::nullopt;
     undo_filter(h.filter, h.stride, std::as_writable_bytes(std::span(out)));
     return out;

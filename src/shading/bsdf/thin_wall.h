@@ -45,12 +45,14 @@ inline LocalEval eval_wall(const RoughGlassBsdf& sheet, const MicrofacetEnergy& 
     const double d = ggx.density(h) / 4, lost = energy.loss(sheet.facets, wo);
     const WallColors once = wall_colors(sheet, dot(wo, h));
     const double r = wall_choice(sheet, dot(wo, h)), chosen = reflected ? r : 1 - r;
-    LocalEval out{(reflected ? once.reflected : once.passed) * static_cast<float>(d * ggx.masking_over_cosine(wo, image)),
-                  (1 - lost) * chosen * d * ggx.visible_over_projected(wo)};
+    LocalEval out{
+        (reflected ? once.reflected : once.passed) * static_cast<float>(d * ggx.masking_over_cosine(wo, image)),
+        (1 - lost) * chosen * d * ggx.visible_over_projected(wo)};
     if (!(lost > 0)) return out;
     // What has bounced more often does so at all angles: that of 60 degrees stands for them.
     const WallColors mean = wall_colors(sheet, 0.5);
-    const double wide = lost * energy.loss(sheet.facets, image) / energy.mean_loss(sheet.facets) * image.z / std::numbers::pi;
+    const double wide =
+        lost * energy.loss(sheet.facets, image) / energy.mean_loss(sheet.facets) * image.z / std::numbers::pi;
     const double mean_r = wall_choice(sheet, 0.5), mean_chosen = reflected ? mean_r : 1 - mean_r;
     out.f_cos = out.f_cos + (reflected ? mean.reflected : mean.passed) * static_cast<float>(wide);
     out.pdf += lost * mean_chosen * WideLobe(sheet.facets).pdf(image.z);
