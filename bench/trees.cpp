@@ -19,7 +19,7 @@ public:
         : name_(std::move(name)), references_(double(count_ids(bvh)) / double(mesh.triangles())) {
         const Geometry geometry = mesh.geometry();
         const LevelPart part{0, 0, 0};
-        level_ = fill_level(std::move(bvh), {&geometry, 1}, {&part, 1}, kNoHit);
+        level_ = fill_level(std::move(bvh), {&geometry, 1}, {&part, 1}, {});
         world_.upper = level_.view();
         world_.parts = &part_, world_.part_count = 1;
         world_.instances = &placed_, world_.shapes = &shapes_;

@@ -8,6 +8,8 @@
 #include "accel/geometry.h"
 #include "accel/instance.h"
 #include "accel/kernels/kernels.h"
+#include "accel/margin.h"
+#include "accel/open.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -27,8 +29,10 @@ struct Built {
     std::vector<GeometrySize> sizes;
     std::vector<bool> on_upper_level;  ///< by geometry
     Level upper;
+    Level far;  ///< World::far
     std::vector<TrianglePart> parts;
     std::vector<PlacedGeometry> instances;
+    Box bounds, near;           ///< of everything; Placement::near
     std::vector<Level> levels;  ///< by geometry; empty for those that are on the upper level, or nowhere
     std::vector<LevelView> views;
     std::vector<ShapesView> shapes;
@@ -38,6 +42,7 @@ struct Built {
         World w;
         w.upper = upper.view();
         w.parts = parts.data(), w.part_count = static_cast<uint32_t>(parts.size());
+        w.far = far.view(), w.near = near;
         w.instances = instances.data(), w.levels = views.data(), w.shapes = shapes.data();
         w.cut_outs = cut_outs.empty() ? nullptr : cut_outs.data();
         return w;
@@ -106,13 +111,9 @@ std::vector<const uint8_t*> find_cut_outs(std::span<const GeometryInstance> inst
 }
 
 /// What a build has to do: every primitive is in one hierarchy, and so is every instance that is not on the upper level
-/// itself. (Those of nothing have no part in it; the last step is larger then.)
-uint64_t work_of(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
-                 const std::vector<bool>& upper) {
-    uint64_t items = 0;
-    for (const Geometry& g : geometries) items += primitive_count(g);
-    for (const GeometryInstance& i : instances) items += !upper[i.geometry];
-    return std::max<uint64_t>(items, 1) * kBuildWork;
+/// itself, or its parts.
+uint64_t work_of(const ItemCounts& counts) {
+    return std::max<uint64_t>(counts.in_place + counts.elsewhere + counts.most_items(), 1) * kBuildWork;
 }
 
 ItemKind kind_of(const Geometry& geometry) {
@@ -138,7 +139,7 @@ Status build_levels(std::span<const Geometry> geometries, const std::vector<bool
         monitor.advance(primitives.size() * kReadWork);
         if (monitor.poll()) return cancelled_error();
         const LevelPart part{0, kNoHit, i};
-        built.levels[i] = build_level(std::move(primitives), geometries, {&part, 1}, kNoHit,
+        built.levels[i] = build_level(std::move(primitives), geometries, {&part, 1}, {},
                                       bvh_options(options, kind_of(geometries[i])), monitor);
         if (monitor.poll()) return cancelled_error();
     }
@@ -162,14 +163,40 @@ Result<PlacedGeometry> place_instance(size_t index, const GeometryInstance& inst
 
 constexpr uint32_t kInstancesBetweenPolls = 16384;
 
+/// What is to stand for the instances on the upper level, `limit` of it at most when they are opened, which is done
+/// where it pays: built.far is there then.
+InstanceItems open_where_it_pays(const Placement& placement, uint64_t limit, const AccelOptions& options,
+                                 const Kernels& kernels, BuildMonitor& outer, Built& built) {
+    InstanceItems whole = whole_instances(placement);
+    if (limit <= whole.parts.size()) return whole;
+    BuildMonitor monitor([&] { return outer.poll(); });
+    const auto level_over = [&](const InstanceItems& items) {
+        LargeArray<BuildPrimitive> boxes(items.boxes.size());
+        std::copy(items.boxes.begin(), items.boxes.end(), boxes.begin());
+        return build_level(std::move(boxes), {}, {}, {0, items.parts}, bvh_options(options, ItemKind::instance),
+                           monitor);
+    };
+    Level far = level_over(whole);
+    const auto cost_over = [&](const Level& level) {
+        World world = built.world();
+        world.upper = level.view(), world.instances = placement.placed.data();
+        return sampled_cost(world, kernels, far.bounds);
+    };
+    InstanceItems opened = open_instances(whole, placement, built.levels, limit);
+    if (options.open == OpenInstances::automatic && !monitor.poll() &&
+        cost_over(level_over(opened)) > kWorthOpening * cost_over(far))
+        return whole;
+    built.far = std::move(far);
+    return opened;
+}
+
 /// The upper level, over the primitives that are in place and the instances of everything else.
 Status build_upper(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
-                   const std::vector<bool>& upper, const AccelOptions& options, BuildMonitor& monitor, Built& built) {
-    size_t count = 0;
-    for (const GeometryInstance& i : instances)
-        count += upper[i.geometry] ? primitive_count(geometries[i.geometry]) : 1;
+                   const AccelOptions& options, const Kernels& kernels, BuildMonitor& monitor, Built& built) {
+    const std::vector<bool>& upper = built.on_upper_level;
+    const ItemCounts counts = count_items(geometries, instances, upper, options);
     LargeArray<BuildPrimitive> primitives;
-    primitives.reserve(count);
+    primitives.reserve(counts.in_place + counts.most_items());
     std::vector<LevelPart> parts;
     for (uint32_t i = 0; i < instances.size(); ++i) {
         const uint32_t geometry = instances[i].geometry;
@@ -187,19 +214,29 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
     ItemKind mostly = parts.empty() ? ItemKind::instance : ItemKind::shape;
     for (const LevelPart& part : parts)
         if (kind_of(geometries[part.geometry]) == ItemKind::block) mostly = ItemKind::block;
-    built.instances.reserve(instances.size());
+    Placement placement{instances, {}, {}, range_bounds(primitives).box.box(), {}};
+    placement.placed.reserve(instances.size());
     for (uint32_t i = 0; i < instances.size(); ++i) {
         if (i % kInstancesBetweenPolls == 0 && monitor.poll()) return cancelled_error();
         const Box bounds = built.levels[instances[i].geometry].bounds;
         Result<PlacedGeometry> placed = place_instance(i, instances[i], bounds);
         if (!placed) return placed.error();
-        built.instances.push_back(*placed);
-        if (!bounds.empty()) primitives.emplace_back(placed->world, first_instance + i, ItemKind::instance);
+        placement.placed.push_back(*placed);
+        if (!bounds.empty()) placement.scene.extend(placed->world);
     }
-    monitor.advance((primitives.size() - first_instance) * kReadWork);
+    placement.add_margins();
+    built.bounds = placement.scene, built.near = placement.near;
+    const InstanceItems items = open_where_it_pays(placement, counts.opened, options, kernels, monitor, built);
+    built.instances = std::move(placement.placed);
+    for (BuildPrimitive box : items.boxes) {
+        box.id += first_instance;
+        primitives.push_back(box);
+    }
+    monitor.advance(items.boxes.size() * kReadWork + (counts.most_items() - items.boxes.size()) * kBuildWork);
     BvhOptions upper_options = bvh_options(options, mostly);
     upper_options.split_boxes = true;
-    built.upper = build_level(std::move(primitives), geometries, parts, first_instance, upper_options, monitor);
+    built.upper =
+        build_level(std::move(primitives), geometries, parts, {first_instance, items.parts}, upper_options, monitor);
     return monitor.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 
@@ -208,10 +245,21 @@ uint64_t bytes_of(const Array& v) {
     return v.capacity() * sizeof(v[0]);
 }
 double cost_of(const Built& built) {
-    std::vector<double> by_geometry, by_instance;
-    for (const Level& level : built.levels) by_geometry.push_back(expected_cost(level, {}));
-    for (const PlacedGeometry& placed : built.instances) by_instance.push_back(by_geometry[placed.geometry]);
-    return expected_cost(built.upper, by_instance);
+    std::vector<double> whole;
+    for (const Level& level : built.levels) whole.push_back(expected_cost(level, {}));
+    std::vector<std::vector<double>> below(built.levels.size());
+    for (const LeafEntry& entry : built.upper.entries) {
+        if (entry.instance == kNoHit) continue;
+        const uint32_t geometry = built.instances[entry.instance].geometry;
+        if (built.on_upper_level[geometry] || entry.prim == kWholeInstance || !below[geometry].empty()) continue;
+        below[geometry] = costs_below(built.levels[geometry]);
+    }
+    return expected_cost(built.upper, [&](const LeafEntry& entry) {
+        const uint32_t geometry = built.instances[entry.instance].geometry;
+        if (entry.prim == kWholeInstance) return whole[geometry];
+        const uint32_t ref = child_of(built.levels[geometry], entry.prim / kWidth, entry.prim % kWidth);
+        return ChildRef::is_leaf(ref) ? item_count(built.levels[geometry], ref) : below[geometry][ref];
+    });
 }
 AccelStatistics count(std::span<const Geometry> geometries, const Built& built) {
     AccelStatistics s;
@@ -224,7 +272,10 @@ AccelStatistics count(std::span<const Geometry> geometries, const Built& built) 
     };
     for (const Geometry& g : geometries) s.primitives += primitive_count(g);
     for (const Level& level : built.levels) add(level);
-    add(built.upper);
+    add(built.upper), add(built.far);
+    for (const LeafEntry& entry : built.upper.entries)
+        s.instance_parts +=
+            !built.on_upper_level[built.instances[entry.instance].geometry] && entry.prim != kWholeInstance;
     s.cost = cost_of(built);
     s.bytes += bytes_of(built.sizes) + built.on_upper_level.capacity() / 8 + bytes_of(built.levels) +
                bytes_of(built.views) + bytes_of(built.shapes) + bytes_of(built.parts) + bytes_of(built.instances) +
@@ -258,22 +309,26 @@ Status check_same(std::span<const Geometry> geometries, std::span<const Geometry
 }
 
 /// All instances in their new places, once everything is checked.
-Result<std::vector<PlacedGeometry>> place_again(std::span<const Geometry> geometries,
-                                                std::span<const GeometryInstance> instances, const Built& built) {
-    std::vector<Box> bounds;
+Result<Placement> place_again(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
+                              const Built& built) {
+    std::vector<Box> bounds, whole;
     for (size_t i = 0; i < geometries.size(); ++i) {
         const Result<Box> box = checked_bounds(geometries[i], i);
         if (!box) return box.error();
+        whole.push_back(*box);
         bounds.push_back(built.on_upper_level[i] ? Box{} : *box);
     }
-    std::vector<PlacedGeometry> placed;
-    placed.reserve(instances.size());
+    Placement placement;
+    placement.instances = instances;
+    placement.placed.reserve(instances.size());
     for (size_t i = 0; i < instances.size(); ++i) {
         const Result<PlacedGeometry> one = place_instance(i, instances[i], bounds[instances[i].geometry]);
         if (!one) return one.error();
-        placed.push_back(*one);
+        placement.placed.push_back(*one);
+        placement.scene.extend(built.on_upper_level[instances[i].geometry] ? whole[instances[i].geometry] : one->world);
     }
-    return placed;
+    placement.add_margins();
+    return placement;
 }
 
 }  // namespace
@@ -301,13 +356,14 @@ Result<Accel> Accel::build(std::span<const Geometry> geometries, std::span<const
         auto data = std::make_unique<Data>();
         data->kernels = *kernels;
         const std::vector<bool> upper = upper_geometries(geometries, instances);
-        BuildMonitor monitor(options.cancelled, options.progress, work_of(geometries, instances, upper));
+        BuildMonitor monitor(options.cancelled, options.progress,
+                             work_of(count_items(geometries, instances, upper, options)));
         Built& built = data->built;
         built.layout = options.layout;
         built.on_upper_level = upper;
         for (const Geometry& geometry : geometries) built.sizes.push_back(size_of(geometry));
         if (Status status = build_levels(geometries, upper, options, monitor, built); !status) return status.error();
-        if (Status status = build_upper(geometries, instances, upper, options, monitor, built); !status)
+        if (Status status = build_upper(geometries, instances, options, **kernels, monitor, built); !status)
             return status.error();
         built.cut_outs = find_cut_outs(instances);
         data->count_again(geometries);
@@ -326,7 +382,7 @@ Status Accel::refit(std::span<const Geometry> geometries, std::span<const Geomet
     try {
         Built& built = data_->built;
         if (Status status = check_same(geometries, instances, built); !status) return status;
-        Result<std::vector<PlacedGeometry>> placed = place_again(geometries, instances, built);
+        Result<Placement> placed = place_again(geometries, instances, built);
         if (!placed) return placed.error();
         std::vector<LevelPart> parts;
         for (const TrianglePart& part : built.parts)
@@ -337,15 +393,23 @@ Status Accel::refit(std::span<const Geometry> geometries, std::span<const Geomet
             const LevelPart part = whole(i);
             repacked[i] = repack_level(built.levels[i], geometries, {&part, 1});
         }
-        CompactLevel repacked_upper = repack_level(built.upper, geometries, parts);
+        CompactLevel repacked_upper = repack_level(built.upper, geometries, parts),
+                     repacked_far = repack_level(built.far, geometries, {});
         // From here on nothing fails.
-        std::copy(placed->begin(), placed->end(), built.instances.begin());
+        std::copy(placed->placed.begin(), placed->placed.end(), built.instances.begin());
+        built.bounds = placed->scene, built.near = placed->near;
         for (uint32_t i = 0; i < geometries.size(); ++i) {
             const LevelPart part = whole(i);
-            refit_level(built.levels[i], std::move(repacked[i]), geometries, {&part, 1}, {});
+            refit_level(built.levels[i], std::move(repacked[i]), geometries, {&part, 1}, {}, {});
             built.shapes[i] = shapes_of(geometries[i]), built.views[i] = built.levels[i].view();
         }
-        refit_level(built.upper, std::move(repacked_upper), geometries, parts, built.instances);
+        const auto box_of = [&](const LeafEntry& entry) {
+            if (entry.prim == kWholeInstance) return built.instances[entry.instance].world;
+            const Level& level = built.levels[built.instances[entry.instance].geometry];
+            return placed->world_box(entry.instance, child_box(level, entry.prim / kWidth, entry.prim % kWidth));
+        };
+        refit_level(built.upper, std::move(repacked_upper), geometries, parts, built.instances, box_of);
+        refit_level(built.far, std::move(repacked_far), geometries, {}, built.instances, box_of);
         data_->world = built.world();
         data_->count_again(geometries);
         return Ok{};
@@ -389,10 +453,11 @@ Accel::Occlusion Accel::occluded(const Ray& ray) const noexcept {
 
 RayVisits Accel::visits(const Ray& ray) const noexcept {
     const FloatMode mode;
-    return data_->kernels->visits(data_->world, ray);
+    uint32_t instances = 0;
+    return data_->kernels->visits(data_->world, ray, instances);
 }
 
-Accel::Bounds Accel::bounds() const noexcept { return {data_->built.upper.bounds.lo, data_->built.upper.bounds.hi}; }
+Accel::Bounds Accel::bounds() const noexcept { return {data_->built.bounds.lo, data_->built.bounds.hi}; }
 
 const AccelStatistics& Accel::statistics() const noexcept { return data_->statistics; }
 

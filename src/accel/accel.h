@@ -50,11 +50,19 @@ struct GeometryInstance {
     std::span<const uint8_t> cut_outs = {};
 };
 
+/// Whether parts of instances stand on the upper level in the places of instances; never changes an answer.
+enum class OpenInstances : uint8_t {
+    automatic,  ///< where instances lie within each other so much that rays get faster
+    never,
+    always,  ///< for tests
+};
+
 struct AccelOptions {
     BvhBuilder builder = BvhBuilder::sah;
     BvhLayout layout = BvhLayout::full;
     uint32_t max_depth = 64;  ///< 1 … 64 levels below a root; a leaf there takes whatever is left
     Isa isa = Isa::automatic;
+    OpenInstances open = OpenInstances::automatic;
     std::function<bool()> cancelled;  ///< asked now and then during the build, by one thread at a time
     /// Told now and then how much of the work is done: more each time, above 0 and up to 1, which only a build that
     /// succeeds reaches. By one thread at a time, never while `cancelled` is asked; never changes the result.
@@ -63,8 +71,9 @@ struct AccelOptions {
 
 struct AccelStatistics {
     uint64_t primitives = 0, nodes = 0, leaves = 0;
-    uint32_t depth = 0;  ///< splits above the deepest leaf of either level
-    uint64_t bytes = 0;  ///< everything the Accel holds; the caller's arrays are not counted
+    uint64_t instance_parts = 0;  ///< on the upper level, in the places of instances; 0 unless these are opened
+    uint32_t depth = 0;           ///< splits above the deepest leaf of either level
+    uint64_t bytes = 0;           ///< everything the Accel holds; the caller's arrays are not counted
     /// Visits of nodes and tests of items that the surface-area heuristic expects for a ray that meets the bounds,
     /// those within instances included. Compare it after a refit with what it was: twice the cost is about twice the
     /// time.

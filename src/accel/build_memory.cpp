@@ -5,6 +5,7 @@
 #include "accel/binary_tree.h"
 #include "accel/geometry.h"
 #include "accel/morton.h"
+#include "accel/open.h"
 #include "accel/reinsert.h"
 #include "accel/split_spatial.h"
 #include "accel/world.h"
@@ -27,11 +28,13 @@ BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options)
     const uint64_t n = counts.triangles + counts.others;
     if (n == 0) return {};
     const bool high_quality = options.builder == BvhBuilder::high_quality;
-    const uint64_t added = high_quality && counts.split_boxes ? n / kPrimitivesPerCut : 0;
+    // Only triangles are cut, but there is room for all.
+    const uint64_t room = high_quality && counts.split_boxes ? n / kPrimitivesPerCut : 0;
+    const uint64_t added = counts.triangles ? room : 0;
     // In the worst case a leaf holds one primitive, and a node two leaves.
-    const uint64_t m = n + added, triangles = counts.triangles + (counts.triangles ? added : 0);
+    const uint64_t m = n + added, triangles = counts.triangles + added;
     const uint64_t nodes = m + 1, binary_nodes = 2 * m;
-    const uint64_t boxes = n * sizeof(BuildPrimitive), more_boxes = m * sizeof(BuildPrimitive);
+    const uint64_t boxes = n * sizeof(BuildPrimitive), more_boxes = (n + room) * sizeof(BuildPrimitive);
     const uint64_t entries = counts.others * sizeof(LeafEntry);
     const uint64_t ids = triangles * kBlock * sizeof(uint32_t) + counts.others * sizeof(uint32_t);
     const uint64_t wide = nodes * sizeof(WideNode), compact_nodes = nodes * sizeof(CompactNode);
@@ -68,7 +71,7 @@ BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const G
     const uint64_t lists =
         geometries.size() *
             (sizeof(Level) + kGrowing * (sizeof(LevelPart) + sizeof(LevelView) + sizeof(ShapesView) + 64)) +
-        instances.size() * (sizeof(PlacedGeometry) + sizeof(void*) +
+        instances.size() * (sizeof(PlacedGeometry) + sizeof(std::optional<Vec3>) + sizeof(void*) +
                             kGrowing * (sizeof(LevelPart) + sizeof(TrianglePart) + sizeof(double)));
     BuildMemory all{kFixed + lists, kFixed + lists};
     const auto add = [&](const LevelCounts& counts) {
@@ -86,8 +89,22 @@ BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const G
         else
             upper.triangles += counts.triangles, upper.others += counts.others;
     }
-    for (const GeometryInstance& instance : instances) upper.others += !on_upper_level[instance.geometry];
-    add(upper);
+    const ItemCounts counts = count_items(geometries, instances, on_upper_level, options);
+    upper.others += counts.most_items();
+    // What is to stand for the instances, whole and opened, and while that is compared both hierarchies of it.
+    const BuildMemory far = level_memory({0, counts.opened ? counts.instances : 0}, options);
+    const BuildMemory trial = level_memory({0, counts.opened}, options);
+    const uint64_t items = (counts.instances + counts.opened) * kGrowing *
+                           (sizeof(InstancePart) + sizeof(BuildPrimitive) + sizeof(std::pair<double, uint32_t>));
+    const uint64_t boxes = (upper.triangles + upper.others) * sizeof(BuildPrimitive);
+    all.result += far.result;
+    all.peak = std::max(all.peak, all.result + items + boxes + trial.peak);
+    const BuildMemory level = level_memory(upper, options);
+    all.peak = std::max(all.peak, all.result + items + level.peak);
+    all.result += level.result;
+    // The costs of nodes that parts of instances lead to.
+    if (counts.opened)
+        all.peak = std::max(all.peak, all.result + (counts.elsewhere + geometries.size()) * sizeof(double));
     return all;
 }
 

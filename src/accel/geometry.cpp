@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <string>
 
+#include "accel/children.h"
 #include "accel/planar.h"
 #include "accel/sphere.h"
 #include "accel/triangle.h"
@@ -141,6 +143,17 @@ LargeArray<TriangleBlock> blocks_of(std::span<const uint32_t> ids) {
 
 }  // namespace
 
+uint32_t child_count(const Level& level, uint32_t node) {
+    return level.compact.nodes.empty() ? child_count(level.nodes[node])
+                                       : static_cast<uint32_t>(std::popcount(level.compact.nodes[node].present()));
+}
+uint32_t child_of(const Level& level, uint32_t node, uint32_t child) {
+    return level.compact.nodes.empty() ? level.nodes[node].child[child] : level.compact.nodes[node].child[child];
+}
+Box child_box(const Level& level, uint32_t node, uint32_t child) {
+    return level.compact.nodes.empty() ? child_box(level.nodes[node], child) : level.compact.nodes[node].box(child);
+}
+
 LevelView Level::view() const {
     const void* none = &kNoBlocks;
     if (!compact.nodes.empty())
@@ -207,7 +220,7 @@ Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index) {
 }
 
 Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
-                  std::span<const LevelPart> parts, uint32_t first_instance, const BvhOptions& options,
+                  std::span<const LevelPart> parts, const InstanceParts& instances, const BvhOptions& options,
                   BuildMonitor& monitor) {
     const uint64_t work = primitives.size() * kPackWork;
     Bvh bvh = build_bvh(primitives, options, monitor);
@@ -217,7 +230,7 @@ Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometr
         const auto triangle = [&](uint32_t id) { return triangle_of(geometries, parts, id); };
         compact = make_compact(bvh, triangle, monitor, work);
     }
-    Level level = fill_level(std::move(bvh), geometries, parts, first_instance);
+    Level level = fill_level(std::move(bvh), geometries, parts, instances);
     level.compact = std::move(compact);
     if (options.layout == BvhLayout::full) monitor.advance(work);
     return level;
@@ -228,15 +241,16 @@ CompactLevel repack_level(const Level& level, std::span<const Geometry> geometri
 }
 
 Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                 uint32_t first_instance) {
+                 const InstanceParts& instances) {
     Level level;
     level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
     level.blocks = blocks_of(bvh.blocks);
     place_vertices(level.blocks, geometries, parts);
     level.entries.reserve(bvh.entries.size());
     for (const uint32_t id : bvh.entries) {
-        if (id >= first_instance) {
-            level.entries.push_back({id - first_instance, 0, {}});
+        if (id >= instances.first) {
+            const InstancePart& part = instances.parts[id - instances.first];
+            level.entries.push_back({part.instance, part.place, {}});
         } else {
             const LevelPart& part = part_of(parts, id);
             const uint32_t prim = id - part.first;

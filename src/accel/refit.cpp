@@ -60,13 +60,14 @@ class Refitter {
 public:
     Refitter(LargeArray<Node>& nodes, const LargeArray<Block>& blocks, std::vector<LeafEntry>& entries,
              std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-             std::span<const PlacedGeometry> instances)
+             std::span<const PlacedGeometry> instances, const BoxOfInstance& instance_box)
         : nodes_(nodes),
           blocks_(blocks),
           entries_(entries),
           geometries_(geometries),
           parts_(parts),
-          instances_(instances) {}
+          instances_(instances),
+          instance_box_(instance_box) {}
 
     Box run() { return refit(0, static_cast<uint32_t>(nodes_.size())); }
 
@@ -110,7 +111,7 @@ private:
         for (LeafEntry& entry : std::span(entries_).subspan(ChildRef::first(leaf), ChildRef::count(leaf))) {
             const bool shape = ChildRef::kind(leaf) == ItemKind::shape;
             if (shape) entry.own = shape_bounds(geometry_of(entry), entry.prim);
-            box.extend(shape ? entry.own : instances_[entry.instance].world);
+            box.extend(shape ? entry.own : instance_box_(entry));
         }
         return box;
     }
@@ -121,30 +122,40 @@ private:
     std::span<const Geometry> geometries_;
     std::span<const LevelPart> parts_;
     std::span<const PlacedGeometry> instances_;
+    const BoxOfInstance& instance_box_;
 };
+
+/// What visits of children and tests of items cost that a node leads to directly, times their surfaces.
+template <class Node, class Block>
+double own_cost(const Level& level, const Node& node, const LargeArray<Block>& blocks, double whole,
+                const CostOfInstance& instance_cost) {
+    double sum = 0;
+    for (uint32_t i = 0; i < child_count(node); ++i) {
+        const uint32_t child = node.child[i];
+        double cost = 1;
+        if (ChildRef::is_leaf(child)) {
+            cost = items_of(blocks, child);
+            if (ChildRef::kind(child) == ItemKind::instance)
+                for (uint32_t k = 0; k < ChildRef::count(child); ++k)
+                    cost += instance_cost(level.entries[ChildRef::first(child) + k]);
+        }
+        // A flat or single point of a scene is met as a whole.
+        sum += whole > 0 ? cost * (child_box(node, i).half_area() / whole) : cost;
+    }
+    return sum;
+}
 
 /// In chunks that do not depend on the workers, added in order.
 template <class Node, class Block>
 double cost_of(const Level& level, const LargeArray<Node>& nodes, const LargeArray<Block>& blocks,
-               std::span<const double> instance_costs) {
+               const CostOfInstance& instance_cost) {
     constexpr size_t kGrain = 4096;
     const double whole = level.bounds.half_area();
     std::vector<double> parts((nodes.size() + kGrain - 1) / kGrain);
     parallel_for(nodes.size(), kGrain, [&](size_t begin, size_t end) {
         double sum = 0;
         for (const Node& node : std::span(nodes).subspan(begin, end - begin))
-            for (uint32_t i = 0; i < child_count(node); ++i) {
-                const uint32_t child = node.child[i];
-                double cost = 1;
-                if (ChildRef::is_leaf(child)) {
-                    cost = items_of(blocks, child);
-                    if (ChildRef::kind(child) == ItemKind::instance)
-                        for (uint32_t k = 0; k < ChildRef::count(child); ++k)
-                            cost += instance_costs[level.entries[ChildRef::first(child) + k].instance];
-                }
-                // A flat or single point of a scene is met as a whole.
-                sum += whole > 0 ? cost * (child_box(node, i).half_area() / whole) : cost;
-            }
+            sum += own_cost(level, node, blocks, whole, instance_cost);
         parts[begin / kGrain] = sum;
     });
     double sum = 1;
@@ -152,24 +163,54 @@ double cost_of(const Level& level, const LargeArray<Node>& nodes, const LargeArr
     return sum;
 }
 
+template <class Node, class Block>
+std::vector<double> below(const Level& level, const LargeArray<Node>& nodes, const LargeArray<Block>& blocks) {
+    std::vector<double> sum(nodes.size());
+    for (size_t i = nodes.size(); i-- > 0;) {
+        Box box;
+        double children = 0;
+        for (uint32_t c = 0; c < child_count(nodes[i]); ++c) {
+            const uint32_t child = nodes[i].child[c];
+            const Box of_child = child_box(nodes[i], c);
+            box.extend(of_child);
+            if (!ChildRef::is_leaf(child)) children += (sum[child] - 1) * of_child.half_area();
+        }
+        const double whole = box.half_area();
+        sum[i] = 1 + own_cost(level, nodes[i], blocks, whole, {}) + (whole > 0 ? children / whole : 0);
+    }
+    return sum;
+}
+
 }  // namespace
 
+uint32_t item_count(const Level& level, uint32_t leaf) {
+    return level.compact.nodes.empty() ? items_of(level.blocks, leaf) : items_of(level.compact.blocks, leaf);
+}
+
 void refit_level(Level& level, CompactLevel repacked, std::span<const Geometry> geometries,
-                 std::span<const LevelPart> parts, std::span<const PlacedGeometry> instances) {
+                 std::span<const LevelPart> parts, std::span<const PlacedGeometry> instances,
+                 const BoxOfInstance& instance_box) {
     level.compact = std::move(repacked);
     if (!level.compact.nodes.empty()) {
-        level.bounds =
-            Refitter(level.compact.nodes, level.compact.blocks, level.entries, geometries, parts, instances).run();
+        level.bounds = Refitter(level.compact.nodes, level.compact.blocks, level.entries, geometries, parts, instances,
+                                instance_box)
+                           .run();
     } else if (!level.nodes.empty()) {
         place_vertices(level.blocks, geometries, parts);
-        level.bounds = Refitter(level.nodes, level.blocks, level.entries, geometries, parts, instances).run();
+        level.bounds =
+            Refitter(level.nodes, level.blocks, level.entries, geometries, parts, instances, instance_box).run();
     }
 }
 
-double expected_cost(const Level& level, std::span<const double> instance_costs) {
-    if (!level.compact.nodes.empty()) return cost_of(level, level.compact.nodes, level.compact.blocks, instance_costs);
+double expected_cost(const Level& level, const CostOfInstance& instance_cost) {
+    if (!level.compact.nodes.empty()) return cost_of(level, level.compact.nodes, level.compact.blocks, instance_cost);
     if (level.nodes.empty()) return 0;
-    return cost_of(level, level.nodes, level.blocks, instance_costs);
+    return cost_of(level, level.nodes, level.blocks, instance_cost);
+}
+
+std::vector<double> costs_below(const Level& level) {
+    if (!level.compact.nodes.empty()) return below(level, level.compact.nodes, level.compact.blocks);
+    return below(level, level.nodes, level.blocks);
 }
 
 }  // namespace steradian

@@ -3,17 +3,22 @@
 
 #include "accel/accel.h"
 #include "accel/instance.h"
+#include "accel/margin.h"
 #include "accel/triangle_block.h"
 #include "accel/wide_node.h"
 
 namespace steradian {
 
-/// A shape or an instance in a leaf. On the upper level `instance` is the index of the instance; within one it means
-/// nothing.
+/// A shape, an instance or a part of an instance in a leaf. On the upper level `instance` is the index of the instance;
+/// within one it means nothing.
 struct LeafEntry {
-    uint32_t instance, prim;
-    Box own;  ///< of a shape; dear to compute
+    uint32_t instance;
+    uint32_t prim;  ///< of a shape; of an instance kWholeInstance, or where in its hierarchy the part's reference is
+    Box own;        ///< of a shape; dear to compute
 };
+inline constexpr uint32_t kWholeInstance = kNoHit;
+/// Child `child` of a node of an instance's hierarchy, as LeafEntry::prim.
+constexpr uint32_t part_place(uint32_t node, uint32_t child) { return node * kWidth + child; }
 
 /// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
 struct LevelView {
@@ -40,6 +45,10 @@ struct World {
     LevelView upper;
     const TrianglePart* parts = nullptr;  ///< ascending
     uint32_t part_count = 0;
+    /// Where instances are opened (open.h): a second upper level with all of them as wholes, for rays that are not
+    /// near.
+    LevelView far;
+    Box near;
     const PlacedGeometry* instances = nullptr;
     const LevelView* levels = nullptr;   ///< by geometry
     const ShapesView* shapes = nullptr;  ///< by geometry
@@ -47,6 +56,8 @@ struct World {
     /// is.
     const uint8_t* const* cut_outs = nullptr;
 
+    /// Whether parts of instances are not enough for a canonical ray.
+    bool is_far(const Ray& ray) const { return far.nodes != nullptr && !is_near(near, ray); }
     bool is_cut_out(const Hit& hit) const {
         const uint8_t* bits = cut_outs[hit.instance];
         return bits && (bits[hit.prim / 8] >> (hit.prim % 8) & 1);

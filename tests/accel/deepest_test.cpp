@@ -93,7 +93,7 @@ TEST(Deepest, StacksHoldBothLevels) {
     const PlacedGeometry instances[] = {in_place, *placed};
     const ShapesView shapes[2] = {};
     const TrianglePart part{0, 0};
-    const LeafEntry entry{1, 0, {}};
+    const LeafEntry entry{1, kWholeInstance, {}};
     const auto world_of = [&](const LevelView& upper, const LevelView* levels) {
         World world;
         world.upper = upper;

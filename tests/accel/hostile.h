@@ -25,6 +25,7 @@ HostileCase hostile_case(std::span<const uint8_t> bytes);
 /// How hard the cases are, so that a test can see that they are not all empty.
 struct HostileCounts {
     size_t cases = 0, refused = 0, rays = 0, hits = 0, ties = 0, cut_outs = 0;
+    size_t opened = 0;  ///< hierarchies with parts of instances
 };
 
 /// Every builder, kernel, call, and the spans that the case asks for, against brute force. Says what differs; empty

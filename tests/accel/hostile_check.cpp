@@ -162,8 +162,10 @@ std::string check_hostile_case(const HostileCase& hostile, HostileCounts& counts
     std::optional<std::string> refusal;  // the first one's, which must be everybody's
     std::optional<Answers> expected;
     ++counts.cases;
+    size_t turn = counts.cases;
     for (AccelOptions options : all_options()) {
         options.max_depth = hostile.max_depth;
+        options.open = turn++ % 2 ? OpenInstances::always : OpenInstances::never;
         const std::string name = describe(options);
         const Result<Accel> accel = Accel::build(geometries, hostile.scene.instances, options);
         const std::string message = accel ? "" : accel.error().message;
@@ -176,6 +178,7 @@ std::string check_hostile_case(const HostileCase& hostile, HostileCounts& counts
             if (accel.error().code != ErrorCode::bad_input) return name + ": " + message;
             continue;
         }
+        counts.opened += accel->statistics().instance_parts > 0;
         if (accel->statistics().depth > options.max_depth) return name + ": too deep";
         if (!expected) {
             expected = answers(hostile);

@@ -20,13 +20,14 @@ TEST(Hostile, EveryKernelGivesTheDefinedAnswer) {
         ASSERT_EQ(check_hostile_case(hostile_case(random_bytes(seed)), counts), "") << "seed " << seed;
     std::printf(
         "%zu cases, %zu refused; %zu rays, %zu of them hit, %zu with two hits at one t, %zu only of "
-        "cut-outs\n",
-        counts.cases, counts.refused, counts.rays, counts.hits, counts.ties, counts.cut_outs);
+        "cut-outs; %zu hierarchies with opened instances\n",
+        counts.cases, counts.refused, counts.rays, counts.hits, counts.ties, counts.cut_outs, counts.opened);
     // The cases say something.
     EXPECT_LT(counts.refused, counts.cases / 3);
     EXPECT_GT(counts.hits, counts.rays / 5);
     EXPECT_GT(counts.ties, counts.rays / 50);
     EXPECT_GT(counts.cut_outs, counts.rays / 50);
+    EXPECT_GT(counts.opened, counts.cases);
 }
 
 /// No bytes at all, one, the same one many times.

@@ -26,6 +26,7 @@ struct World {
     std::vector<Mesh> meshes;
     std::vector<SphereGeometry> spheres;
     std::vector<GeometryInstance> instances;
+    OpenInstances open = OpenInstances::automatic;
 
     std::vector<Geometry> geometries() const {
         std::vector<Geometry> all;
@@ -73,6 +74,16 @@ std::vector<World> worlds() {
     for (int i = 0; i < n; ++i) spheres.spheres.push_back({in_cube(random, 1), 0.01f});
     many.instances.push_back({1, {}});
     for (int i = 0; i < n; ++i) many.instances.push_back({0, translation(i % 141, i / 141, 0)});
+    World pile{"instances within each other", {soup(n, 0.02, 8)}, {}, {}},
+        opened{"opened instances", {soup(n, 0.02, 8)}, {}, {{0, {}}}, OpenInstances::always};
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 at = in_cube(random, 0.5), around = in_cube(random, 1);
+        pile.instances.push_back(
+            {0, translation(at.x, at.y, at.z) * rotation_degrees(i, {around.x, around.y, around.z})});
+    }
+    opened.instances = pile.instances;
+    opened.meshes.push_back(soup(100, 0.1, 9)), opened.instances.push_back({1, {}});
+    all.push_back(std::move(pile)), all.push_back(std::move(opened));
     all.push_back(std::move(spheres)), all.push_back(std::move(many)), all.push_back(std::move(few));
     return all;
 }
@@ -90,6 +101,7 @@ TEST(BuildMemory, IsNeverMoreThanItSays) {
                     with_threads(threads, [&] {
                         AccelOptions options;
                         options.builder = BvhBuilder(builder), options.layout = layout;
+                        options.open = world.open;
                         const std::vector<Geometry> geometries = world.geometries();
                         const auto bound = build_memory(geometries, world.instances, options);
                         bench::reset_memory_use();

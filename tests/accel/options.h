@@ -30,7 +30,8 @@ inline std::vector<AccelOptions> all_options() {
 
 inline std::string describe(const AccelOptions& o) {
     return std::string(name_of(o.builder)) + ", " + std::string(name_of(o.isa)) + ", max depth " +
-           std::to_string(o.max_depth) + ", " + std::string(name_of(o.layout));
+           std::to_string(o.max_depth) + ", " + std::string(name_of(o.layout)) +
+           (o.open == OpenInstances::always ? ", opened" : "");
 }
 
 }  // namespace steradian::test

@@ -17,16 +17,21 @@ struct Variant {
     uint32_t max_depth;
     Isa isa;
     BvhLayout layout = BvhLayout::full;
+    OpenInstances open = OpenInstances::never;
 };
 
-/// Every kernel that the machine has on the default hierarchy, in both layouts, and on the one with split boxes, and
-/// other hierarchies with the kernels in turn.
+/// Every kernel that the machine has on the default hierarchy, in both layouts, with opened instances and without, and
+/// on the one with split boxes, and other hierarchies with the kernels in turn.
 std::vector<Variant> variants() {
     std::vector<Variant> all;
     const std::vector<Isa> isas = supported_isas();
     for (const Isa isa : isas)
         for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::high_quality}) all.push_back({builder, 64, isa});
-    for (const Isa isa : isas) all.push_back({BvhBuilder::sah, 64, isa, BvhLayout::compact});
+    for (const Isa isa : isas)
+        for (const OpenInstances open : {OpenInstances::never, OpenInstances::always}) {
+            all.push_back({BvhBuilder::sah, 64, isa, BvhLayout::compact, open});
+            if (open == OpenInstances::always) all.push_back({BvhBuilder::sah, 64, isa, BvhLayout::full, open});
+        }
     size_t turn = 0;
     for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::fast, 64u},
                                              {BvhBuilder::median, 64u},
@@ -37,18 +42,19 @@ std::vector<Variant> variants() {
                                              {BvhBuilder::high_quality, 1u},
                                              {BvhBuilder::fast, 17u},
                                              {BvhBuilder::fast, 2u}})
-        all.push_back({builder, max_depth, isas[turn++ % isas.size()]});
+        all.push_back({builder, max_depth, isas[turn++ % isas.size()], BvhLayout::full, OpenInstances::always});
     for (const auto& [builder, max_depth] : {std::pair{BvhBuilder::high_quality, 64u},
                                              {BvhBuilder::fast, 64u},
                                              {BvhBuilder::median, 3u},
                                              {BvhBuilder::high_quality, 1u}})
-        all.push_back({builder, max_depth, isas[turn++ % isas.size()], BvhLayout::compact});
+        all.push_back({builder, max_depth, isas[turn++ % isas.size()], BvhLayout::compact, OpenInstances::always});
     return all;
 }
 
 std::string name_of(const Variant& v) {
     return std::string(steradian::name_of(v.builder)) + ", max depth " + std::to_string(v.max_depth) +
-           ", instruction set " + std::to_string(int(v.isa)) + ", " + std::string(steradian::name_of(v.layout));
+           ", instruction set " + std::to_string(int(v.isa)) + ", " + std::string(steradian::name_of(v.layout)) +
+           (v.open == OpenInstances::always ? ", opened" : "");
 }
 
 std::vector<Accel> build_all(const TestScene& scene) {
@@ -60,6 +66,7 @@ std::vector<Accel> build_all(const TestScene& scene) {
         options.max_depth = v.max_depth;
         options.isa = v.isa;
         options.layout = v.layout;
+        options.open = v.open;
         Result<Accel> accel = Accel::build(geometries, scene.instances, options);
         if (!accel) throw std::runtime_error(scene.name + ": " + accel.error().message);
         EXPECT_LE(accel->statistics().depth, v.max_depth) << scene.name << ": " << name_of(v);

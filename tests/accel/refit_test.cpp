@@ -68,6 +68,7 @@ TEST(Refit, EveryBitOfEveryHitOnEveryKernel) {
                 options.isa = isa, options.layout = layout;
                 options.builder = BvhBuilder(turn++ % names_of<BvhBuilder>().size());
                 if (turn % 5 == 0) options.max_depth = 2;
+                options.open = turn % 3 == 0 ? OpenInstances::never : OpenInstances::always;
                 Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
                 ASSERT_TRUE(accel) << scene.name;
                 built.push_back(std::move(*accel));

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "accel/instance.h"
+#include "accel/margin.h"
 #include "accel/planar.h"
 #include "accel/sphere.h"
 #include "accel/triangle.h"
@@ -330,6 +330,30 @@ TestScene instanced(const std::string& name, double scale, std::array<double, 3>
     return s;
 }
 
+/// Instances within each other that are deep enough to be opened: rotated, mirrored, sheared, and some very small or
+/// flat.
+TestScene pile(double scale, std::array<double, 3> offset) {
+    TestScene s("pile of " + std::to_string(scale));
+    Random random(40);
+    s.meshes.push_back(icosphere(2));
+    s.meshes.push_back(soup("", 150, 1, {}, 41).meshes[0]);
+    s.spheres.push_back(some_spheres(40, random));
+    const Affine there = translation(offset[0], offset[1], offset[2]) * scaling(scale, scale, scale);
+    for (uint32_t i = 0; i < 12; ++i) {
+        const auto v = [&] { return random.uniform(-1, 1); };
+        const double x = v(), y = v(), z = v(), ax = v(), ay = v(), az = v();
+        Affine local = translation(x, y, z) * rotation_degrees(random.uniform(0, 360), {ax, ay, az});
+        Affine shear;
+        shear.m[0][1] = v(), shear.m[1][2] = v();
+        if (i % 4 == 1) local = local * shear;
+        if (i % 4 == 2) local = local * scaling(-1, 1, random.decades(-3, 0));
+        if (i % 4 == 3) local = local * scaling(random.decades(-2, 0), random.decades(-2, 0), random.decades(-2, 0));
+        if (i == 8) local = Affine{};
+        s.instances.push_back({i % 3, there * local});
+    }
+    return s;
+}
+
 /// Plates near the origin of the world whose vertices are far from that of their own space, where the ray's origin is
 /// rounded by more than the distance to them: what their tests find is clamped by the boxes of the instances, again and
 /// again.
@@ -376,6 +400,9 @@ std::vector<TestScene> hard_scenes() {
     scenes.push_back(instanced("instances far away", 3, {1e5, -3e5, 2e5}));
     scenes.push_back(instanced("instances, small", 1e-12, {1e-10, 0, 0}));
     scenes.push_back(far_from_their_own_origin());
+    scenes.push_back(pile(1, {0, 0, 0}));
+    scenes.push_back(pile(1e-9, {3e-9, 0, 0}));
+    scenes.push_back(pile(1e5, {0, 0, 2e5}));
     TestScene empty("nothing");
     empty.meshes.emplace_back();
     scenes.push_back(std::move(empty));
@@ -509,12 +536,17 @@ bool ordered(const Hit& a, const Hit& b) {
 
 BruteForce::BruteForce(const TestScene& scene) : data_(std::make_unique<Data>()) {
     data_->geometries = scene.geometries();
+    Placement placement;
+    placement.instances = scene.instances;
     for (const GeometryInstance& instance : scene.instances) {
         EachBox bounds;
         std::visit(bounds, data_->geometries[instance.geometry]);
-        data_->instances.push_back(*place(instance.geometry, instance.world_from_object, bounds.box));
+        placement.placed.push_back(*place(instance.geometry, instance.world_from_object, bounds.box));
+        placement.scene.extend(placement.placed.back().world);
         data_->cut_outs.emplace_back(instance.cut_outs.begin(), instance.cut_outs.end());
     }
+    placement.add_margins();
+    data_->instances = placement.placed;
 }
 BruteForce::~BruteForce() = default;
 

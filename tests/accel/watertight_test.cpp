@@ -111,6 +111,7 @@ TEST(Watertight, RotatedInstancesAreClosedToo) {
                                                scaling(i % 3 ? 1 : -2, 1, 0.5 + random.unit())};
         AccelOptions options;
         options.layout = i % 4 < 2 ? BvhLayout::full : BvhLayout::compact;
+        options.open = i % 5 < 3 ? OpenInstances::always : OpenInstances::never;
         const Result<Accel> accel = Accel::build({&geometry, 1}, {&instance, 1}, options);
         ASSERT_TRUE(accel);
         for (size_t k = 0; k < by_tier<size_t>(5'000, 200'000); ++k) {

@@ -23,20 +23,22 @@ void next_hit(const World& world, const Ray* rays, const Hit* after, Hit* hits, 
     }
     trace<Mode::after>(world, rays, after, count, [&](size_t i, const Hit& hit) { hits[i] = hit; });
 }
-RayVisits visits(const World& world, const Ray& ray) noexcept {
+RayVisits visits(const World& world, const Ray& ray, uint32_t& instances) noexcept {
     RayVisits out;
+    instances = 0;
     Flight f;
     if (!launch<Mode::closest>(f, world, ray, nullptr, 0)) return out;
     walk<Mode::closest>(f, world, [&](uint32_t ref) {
         if (!ChildRef::is_leaf(ref)) {
             ++out.nodes;
-        } else if (ref == kLeaveInstance) {
+        } else if (ref == kLeaveInstance || ref == kEnterFar) {
             return;
         } else if (ChildRef::kind(ref) == ItemKind::block) {
             for (Blocks blocks(f.level, ref); blocks.more(); blocks.next()) ++out.items;
+        } else if (ChildRef::kind(ref) == ItemKind::instance) {
+            ++out.items, ++instances;  // the first one is entered; the others come again
         } else {
-            // Of instances the first is entered; the others come again.
-            out.items += ChildRef::kind(ref) == ItemKind::instance ? 1 : ChildRef::count(ref);
+            out.items += ChildRef::count(ref);
         }
     });
     return out;

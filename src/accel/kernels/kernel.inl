@@ -21,8 +21,8 @@ constexpr bool is_any(Mode mode) { return mode == Mode::any || mode == Mode::opa
 inline constexpr uint32_t kMaxParted = 64;
 /// That, siblings left behind on the way down, in both levels, and what marks the way back up.
 inline constexpr uint32_t kStackSize = kMaxParted + 2 * (kWidth - 1) * kMaxNodeLevels + 2 * kWidth;
-/// Not references of children: the end of an instance, and the end of everything.
-inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu;
+/// Not references of children: the end of an instance, the end of everything, and of the first of two upper levels.
+inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu, kEnterFar = 0xfffffffdu;
 
 /// A ray on its way.
 struct alignas(64) Flight {
@@ -34,6 +34,7 @@ struct alignas(64) Flight {
     uint32_t next;       ///< the child to look at next
     uint32_t depth;      ///< of the stack
     LevelView level;
+    const LevelView* upper;  ///< World::upper or far
 
     TriangleRay triangle_ray;  ///< where the level has triangles
     Hit best, after;
@@ -312,17 +313,19 @@ inline bool visit_shapes(Flight& f, const World& world, uint32_t ref) {
 }
 
 template <Mode kMode>
-inline void to_upper_level(Flight& f, const World& world) {
+inline void to_upper_level(Flight& f) {
     f.instance = kNoHit;
     f.world = {};
-    set_level(f, world.upper, f.world_ray);
+    set_level(f, *f.upper, f.world_ray);
     set_range<kMode>(f);
 }
 
-/// Into the hierarchy of an instance. False when the ray cannot hit anything there.
+/// Into the hierarchy of an instance, or a part of it. False when the ray cannot hit anything there, or will find it on
+/// the other upper level.
 template <Mode kMode>
-bool enter(Flight& f, const World& world, uint32_t instance) {
-    const PlacedGeometry& placed = world.instances[instance];
+bool enter(Flight& f, const World& world, const LeafEntry& entry) {
+    if (entry.prim != kWholeInstance && world.is_far(f.world_ray)) return false;
+    const PlacedGeometry& placed = world.instances[entry.instance];
     Interval range;
     Ray ray = f.world_ray;
     if (!placed.identity) {
@@ -330,17 +333,25 @@ bool enter(Flight& f, const World& world, uint32_t instance) {
         if (range.empty() || !placed.to_object(f.world_ray, ray)) return false;
     }
     f.world = range;
-    f.instance = instance;
+    f.instance = entry.instance;
     set_level(f, world.levels[placed.geometry], ray);
     set_range<kMode>(f);
     f.next = ChildRef::node(0);
+    if (entry.prim != kWholeInstance) f.next = node_at(f.level, entry.prim / kWidth).child[entry.prim % kWidth];
     return true;
 }
 
 template <Mode kMode>
-[[gnu::noinline]] void leave(Flight& f, const World& world) {
-    to_upper_level<kMode>(f, world);
+[[gnu::noinline]] void leave(Flight& f) {
+    to_upper_level<kMode>(f);
     f.next = pop<kMode>(f);
+}
+
+template <Mode kMode>
+[[gnu::noinline]] void enter_far(Flight& f, const World& world) {
+    f.upper = &world.far;
+    to_upper_level<kMode>(f);
+    f.next = ChildRef::node(0);
 }
 
 /// The first of a run of instances; the rest is pushed, and so is the way back.
@@ -348,7 +359,7 @@ template <Mode kMode>
 [[gnu::noinline]] void visit_instances(Flight& f, const World& world) {
     const uint32_t first = ChildRef::first(f.next), count = ChildRef::count(f.next);
     if (count > 1) f.push(ChildRef::leaf(ItemKind::instance, first + 1, count - 1));
-    if (enter<kMode>(f, world, world.upper.entries[first].instance)) {
+    if (enter<kMode>(f, world, f.level.entries[first])) {
         f.push(kLeaveInstance);
     } else {
         f.next = pop<kMode>(f);
@@ -362,9 +373,11 @@ template <Mode kMode>
     if (ChildRef::kind(f.next) == ItemKind::block) [[likely]] {
         done = visit_blocks<kMode>(f, world, f.next);
     } else if (f.next == kLeaveInstance) {
-        return leave<kMode>(f, world);
+        return leave<kMode>(f);
     } else if (ChildRef::kind(f.next) == ItemKind::instance) {
         return visit_instances<kMode>(f, world);
+    } else if (f.next == kEnterFar) {
+        return enter_far<kMode>(f, world);
     } else {
         done = visit_shapes<kMode>(f, world, f.next);
     }
@@ -381,7 +394,10 @@ inline void set_out(Flight& f, const World& world, uint32_t index) {
     f.best.t = f.world_ray.tmax;
     f.depth = 0;
     f.push(kFinished);
-    to_upper_level<kMode>(f, world);
+    if (world.is_far(f.world_ray)) [[unlikely]]
+        f.push(kEnterFar);
+    f.upper = &world.upper;
+    to_upper_level<kMode>(f);
     f.next = ChildRef::node(0);
 }
 

@@ -21,7 +21,8 @@ struct Kernels {
     void (*occluded_coherent)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
     /// Accel::Occlusion, where the world has cut-outs.
     void (*occluded_or_cut_out)(const World&, const Ray* rays, uint8_t* result, size_t count) noexcept;
-    RayVisits (*visits)(const World&, const Ray& ray) noexcept;
+    /// `instances` of the items are instances.
+    RayVisits (*visits)(const World&, const Ray& ray, uint32_t& instances) noexcept;
 };
 
 extern const Kernels kScalarKernels, kScalarCompactKernels;

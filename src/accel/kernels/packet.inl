@@ -159,6 +159,14 @@ inline uint32_t test_child(const Packet& p, const AllPlanes& planes, uint32_t ch
 #include "accel/kernels/packet_leaf.inl"
 #include "accel/kernels/packet_order.inl"
 
+/// Packets know the one upper level only.
+inline bool any_far(const Packet& p, const World& world) {
+    if (world.far.nodes == nullptr) return false;
+    for (const Ray* ray : p.ray)
+        if (world.is_far(*ray)) return true;
+    return false;
+}
+
 template <Mode kMode>
 inline Flight& flight_of(Packet& p, const World& world, uint32_t i) {
     Flight& f = p.flights[i];
@@ -276,7 +284,7 @@ inline void trace_coherent(const World& world, const Ray* rays, size_t count, Fi
         }
         if (used + kPacket > kInFlight) queues.template run<kMode>(world, land), used = 0;
         packet.flights = flights + used;
-        const bool whole = together == kPacket && form(packet);
+        const bool whole = together == kPacket && form(packet) && !any_far(packet, world);
         if (whole) trace_packet<kMode>(packet, world, stack);
         for (uint32_t i = 0; i < together; ++i) {
             Flight& f = flights[used + i];
