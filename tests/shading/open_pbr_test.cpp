@@ -199,6 +199,7 @@ TEST(OpenPbr, ThinWallsScatterToBothSides) {
     m.geometry_thin_walled = true, m.specular_weight = 0, m.subsurface_weight.value = 1;
     m.subsurface_color.value = {0.8f, 0.4f, 0.2f}, m.subsurface_scatter_anisotropy = 0.5f;
     const OneMaterial material(m);
+    EXPECT_FALSE(only_reflects(material.bsdf()));  // lights behind the sheet count
     const Vec3 wo = at_cosine(0.7), up = at_cosine(0.5), down{up.x, up.y, -up.z};
     for (int c = 0; c < 3; ++c) {
         const double lambert = m.subsurface_color.value[c] * 0.5 / std::numbers::pi;

@@ -101,7 +101,10 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
 }
 
 inline bool lobe_is_specular(const OpenPbrBsdf&) { return false; }
-inline bool lobe_only_reflects(const OpenPbrBsdf& lobe) { return lobe.transmission == 0 || lobe.metalness == 1; }
+inline bool lobe_only_reflects(const OpenPbrBsdf& lobe) {
+    const bool passes = lobe.transmission > 0 || (lobe.passed_share > 0 && lobe.subsurface > 0);
+    return !passes || lobe.metalness == 1;
+}
 inline bool lobe_has_direction(const OpenPbrBsdf& lobe) {
     return lobe.metal.facets.alpha_x != lobe.metal.facets.alpha_y || lobe.coat.alpha_x != lobe.coat.alpha_y;
 }
