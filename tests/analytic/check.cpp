@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "steradian/image_io.h"
-#include "steradian/load.h"
 #include "support/support.h"
 
 namespace steradian::analytic {
@@ -55,8 +54,7 @@ void check_pixels(const Case& c, const Expected& e, const Image& image, Judgemen
             }
 }
 
-Judgement judge_exact(const Case& c) {
-    const PreparedCase prepared(c.scene, c.files);
+Judgement judge_exact(const Case& c, const PreparedCase& prepared) {
     Judgement out;
     out.samples = prepared.settings.samples_per_pixel;
     out.pictures = 1;
@@ -104,8 +102,7 @@ double worst_standard_error(const Case& c, const Estimates& all) {
     return worst;
 }
 
-Judgement judge_statistics(const Case& c) {
-    const PreparedCase prepared(c.scene, c.files);
+Judgement judge_statistics(const Case& c, const PreparedCase& prepared) {
     Judgement out;
     out.pictures = test::by_tier(16u, 32u);
     Estimates all;
@@ -141,12 +138,19 @@ Judgement judge_statistics(const Case& c) {
     return out;
 }
 
-}  // namespace
-
-PreparedCase::PreparedCase(const std::string& scene_text, const std::vector<CaseFile>& files) {
+LoadedScene load_case(const std::string& scene_text, const std::vector<CaseFile>& files) {
     const test::TemporaryFolder folder;
     for (const CaseFile& file : files) take(write_image(folder.file(file.name), file.image));
-    LoadedScene loaded = take(load_scene_json(scene_text, "scene.json", folder.path().string()));
+    return take(load_scene_json(scene_text, "scene.json", folder.path().string()));
+}
+
+}  // namespace
+
+PreparedCase::PreparedCase(const std::string& scene_text, const std::vector<CaseFile>& files)
+    : PreparedCase(load_case(scene_text, files)) {}
+
+PreparedCase::PreparedCase(LoadedScene loaded) {
+    if (!loaded.fidelity.empty()) throw std::runtime_error("not honoured: " + loaded.fidelity.warnings()[0].str());
     if (!loaded.diagnostics.empty())
         throw std::runtime_error("the scene gave a warning: " + loaded.diagnostics.warnings()[0].str());
     settings = loaded.settings;
@@ -189,6 +193,10 @@ double mean_over(const Image& image, const Expected& e, int channel) {
     return sum / (double(e.x1 - e.x0) * (e.y1 - e.y0));
 }
 
-Judgement judge(const Case& c) { return c.kind == CaseClass::zero_variance ? judge_exact(c) : judge_statistics(c); }
+Judgement judge(const Case& c) { return judge(c, PreparedCase(c.scene, c.files)); }
+
+Judgement judge(const Case& c, const PreparedCase& prepared) {
+    return c.kind == CaseClass::zero_variance ? judge_exact(c, prepared) : judge_statistics(c, prepared);
+}
 
 }  // namespace steradian::analytic

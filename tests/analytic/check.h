@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analytic/case.h"
+#include "steradian/load.h"
 #include "steradian/render.h"
 
 namespace steradian::analytic {
@@ -22,6 +23,8 @@ namespace steradian::analytic {
 class PreparedCase {
 public:
     PreparedCase(const std::string& scene_text, const std::vector<CaseFile>& files);
+    /// What a file says must not have given a warning, and all of it must be honoured.
+    explicit PreparedCase(LoadedScene loaded);
 
     /// The settings that the scene file asks for.
     RenderSettings settings;
@@ -52,6 +55,8 @@ struct Judgement {
     double worst_standard_error = 0;  ///< relative to the value
 };
 Judgement judge(const Case& c);
+/// The same for a scene that comes from elsewhere: the case says what is expected of it.
+Judgement judge(const Case& c, const PreparedCase& prepared);
 
 inline constexpr double kRounding = 1e-6;  ///< relative error that no variance has to explain
 inline constexpr double kDeviations = 4;

@@ -40,7 +40,8 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     Meshes meshes(context, accessors, materials);
     place_nodes(context, accessors, meshes, root);
     images.decode();
-    if (loaded.scene.instances.empty()) context.warn("the scene has nothing to render", root.offset());
+    const bool sky_to_see = options.environment.replace.has_value();
+    if (loaded.scene.instances.empty() && !sky_to_see) context.warn("the scene has nothing to render", root.offset());
     return loaded;
 }
 
