@@ -216,7 +216,8 @@ def meshopt(name, *arguments, size=4096):
     encode = getattr(library, "meshopt_encode" + name)
     encode.restype = ctypes.c_size_t
     out = ctypes.create_string_buffer(size)
-    return out.raw[:encode(out, ctypes.c_size_t(size), *arguments)]
+    written = encode(out, ctypes.c_size_t(size), *arguments)
+    return out.raw[:written]
 
 
 def meshopt_vertices(data, stride):
