@@ -215,7 +215,9 @@ TEST(NativeScene, OpenPbr) {
                 "transmission_weight": 0.1, "transmission_color": 0.11, "subsurface_weight": 0.12,
                 "subsurface_color": 0.13, "fuzz_weight": 0.14, "fuzz_color": 0.15, "fuzz_roughness": 0.16,
                 "coat_weight": 0.17, "coat_color": 0.18, "coat_roughness": 0.19, "coat_roughness_anisotropy": 0.2,
-                "coat_ior": 1.21, "coat_darkening": 0.22, "geometry_opacity": 0.23},
+                "coat_ior": 1.21, "coat_darkening": 0.22, "geometry_opacity": 0.23, "subsurface_scatter_anisotropy": 0.24,
+                "thin_film_weight": 0.25, "thin_film_thickness": 0.26, "thin_film_ior": 1.27,
+                "emission_luminance": 0.28, "emission_color": 0.29, "geometry_thin_walled": true},
         "textured": {"type": "open_pbr", "base_color": "t", "specular_roughness": "t"}})"));
     const auto get = [&](size_t i) { return std::get<OpenPbrMaterial>(loaded.scene.materials[i]); };
     const OpenPbrMaterial plain = get(0), m = get(1), textured = get(2);
@@ -245,7 +247,15 @@ TEST(NativeScene, OpenPbr) {
                              m.coat_roughness_anisotropy,
                              m.coat_ior - 1,
                              m.coat_darkening,
-                             m.geometry_opacity.value};
+                             m.geometry_opacity.value,
+                             m.subsurface_scatter_anisotropy,
+                             m.thin_film_weight,
+                             m.thin_film_thickness,
+                             m.thin_film_ior - 1,
+                             m.emission_luminance,
+                             m.emission_color.value.r};
+    EXPECT_TRUE(m.geometry_thin_walled);
+    EXPECT_FALSE(plain.geometry_thin_walled);
     for (size_t i = 0; i < std::size(numbers); ++i) EXPECT_NEAR(numbers[i], 0.01 * double(i + 1), 1e-6) << i;
     EXPECT_EQ(textured.base_color.value, (Rgb{1, 1, 1}));
     EXPECT_EQ(textured.base_color.texture, TextureId{0});

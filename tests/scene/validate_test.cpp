@@ -205,6 +205,13 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
         Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
         Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},
+        Fault{"an area light and a material that emits",
+              [](Scene& s) {
+                  OpenPbrMaterial m;
+                  m.emission_luminance = 1;
+                  const InstanceId lit = std::get<AreaLight>(s.lights[2]).instance;
+                  s.materials[index(s.instances[index(lit)].material)] = m;
+              }},
         Fault{"two environment lights", [](Scene& s) { s.lights.push_back(EnvironmentLight{}); }},
         Fault{"camera 0: the field of view",
               [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).vertical_fov = 180; }},
