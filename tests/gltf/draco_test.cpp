@@ -6,6 +6,7 @@
 #include <random>
 
 #include "gltf_builder.h"
+#include "image/samples.h"
 #include "math/vector.h"
 
 namespace steradian {
@@ -91,10 +92,17 @@ std::string file(const Compressed& c, const std::string& index_type = "5123", co
                       ", \"NORMAL\": " + number(n) + ", \"TEXCOORD_0\": " + number(t) + "}, \"indices\": " + number(k) +
                       more + ", \"extensions\": {\"KHR_draco_mesh_compression\": {\"bufferView\": " + view +
                       ", \"attributes\": {\"POSITION\": " + number(c.ids.position) +
-                      ", \"NORMAL\": " + number(c.ids.normal) + ", \"TEXCOORD_0\": " + number(c.ids.uv) + "}}}}";
+                      ", \"NORMAL\": " + number(c.ids.normal) + ", \"TEXCOORD_0\": " + number(c.ids.uv) +
+                      "}}}, \"material\": 0}";
     }
-    return b.binary("\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"meshes\": [{\"primitives\": [" +
-                    primitives + "]}], \"nodes\": [{\"mesh\": 0}]");
+    // A texture, so that the coordinates are read.
+    const int picture = b.view(png_file(1, 1, 8, 0, std::string(2, '\0')));
+    return b.binary(
+        "\"materials\": [{\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0}}}], \"textures\": "
+        "[{\"source\": 0}], \"images\": [{\"bufferView\": " +
+        std::to_string(picture) +
+        "}], \"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"meshes\": [{\"primitives\": [" + primitives +
+        "]}], \"nodes\": [{\"mesh\": 0}]");
 }
 
 /// What the library makes of the data by itself.
@@ -110,6 +118,8 @@ void expect_same(const Compressed& c, float tolerance) {
     const Mesh& mesh = loaded.scene.meshes.at(0);
     const auto theirs = decoded_by_library(c);
     ASSERT_EQ(mesh.positions.size(), theirs->num_points());
+    ASSERT_EQ(mesh.normals.size(), theirs->num_points());
+    ASSERT_EQ(mesh.uvs.size(), theirs->num_points());
     ASSERT_EQ(mesh.indices.size(), size_t(3) * theirs->num_faces());
     for (uint32_t f = 0; f < theirs->num_faces(); ++f)
         for (int k = 0; k < 3; ++k)
