@@ -21,8 +21,30 @@ enum class SamplerKind : uint8_t { sobol, independent };
 enum class FilterKind : uint8_t { box, tent, gaussian, mitchell };
 
 /// What a picture may have beside its colour, each in channels of its own; docs/aovs.md says what they hold.
-enum class Aov : uint8_t { alpha, albedo, normal, depth, position, uv, object, material, primitive, variance, samples };
-inline constexpr uint32_t kAovs = 11;
+enum class Aov : uint8_t {
+    alpha,
+    albedo,
+    normal,
+    depth,
+    position,
+    uv,
+    object,
+    material,
+    primitive,
+    emission,
+    background,
+    diffuse_direct,
+    diffuse_indirect,
+    specular_direct,
+    specular_indirect,
+    transmission_direct,
+    transmission_indirect,
+    variance,
+    samples,
+    crypto_object,
+    crypto_material
+};
+inline constexpr uint32_t kAovs = 21;
 
 class AovSet {
 public:

@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <bit>
+#include <cstring>
 #include <new>
 
 namespace steradian {
@@ -29,6 +30,24 @@ std::string Hasher::hex() const {
     std::string out;
     for (const unsigned char byte : canonical.digest) out += {kHex[byte >> 4], kHex[byte & 15]};
     return out;
+}
+
+uint32_t murmur_hash3(std::string_view bytes, uint32_t seed) noexcept {
+    const auto scrambled = [](uint32_t word) { return std::rotl(word * 0xcc9e2d51u, 15) * 0x1b873593u; };
+    uint32_t hash = seed;
+    std::string_view rest = bytes;
+    for (; rest.size() >= 4; rest.remove_prefix(4)) {
+        uint32_t word = 0;
+        std::memcpy(&word, rest.data(), 4);
+        hash = std::rotl(hash ^ scrambled(word), 13) * 5 + 0xe6546b64u;
+    }
+    uint32_t tail = 0;
+    std::memcpy(&tail, rest.data(), rest.size());
+    hash ^= scrambled(tail);
+    hash ^= static_cast<uint32_t>(bytes.size());
+    hash = (hash ^ (hash >> 16)) * 0x85ebca6bu;
+    hash = (hash ^ (hash >> 13)) * 0xc2b2ae35u;
+    return hash ^ (hash >> 16);
 }
 
 }  // namespace steradian

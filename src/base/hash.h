@@ -1,4 +1,4 @@
-// XXH3-128, streaming.
+// XXH3-128, streaming; and MurmurHash3 for files that want it.
 #pragma once
 
 #include <cstddef>
@@ -43,5 +43,8 @@ public:
 private:
     void* state_;
 };
+
+/// MurmurHash3_x86_32 (Appleby 2011), which Cryptomatte names things by.
+uint32_t murmur_hash3(std::string_view bytes, uint32_t seed) noexcept;
 
 }  // namespace steradian

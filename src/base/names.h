@@ -23,8 +23,27 @@ inline constexpr std::array<std::string_view, 3> kLightSamplingNames{"mis", "lig
 inline constexpr std::array<std::string_view, 3> kLightChoiceNames{"bvh", "power", "uniform"};
 inline constexpr std::array<std::string_view, 2> kSamplerNames{"sobol", "independent"};
 inline constexpr std::array<std::string_view, 4> kFilterNames{"box", "tent", "gaussian", "mitchell"};
-inline constexpr std::array<std::string_view, kAovs> kAovNames{
-    "alpha", "albedo", "normal", "depth", "position", "uv", "object", "material", "primitive", "variance", "samples"};
+inline constexpr std::array<std::string_view, kAovs> kAovNames{"alpha",
+                                                               "albedo",
+                                                               "normal",
+                                                               "depth",
+                                                               "position",
+                                                               "uv",
+                                                               "object",
+                                                               "material",
+                                                               "primitive",
+                                                               "emission",
+                                                               "background",
+                                                               "diffuse_direct",
+                                                               "diffuse_indirect",
+                                                               "specular_direct",
+                                                               "specular_indirect",
+                                                               "transmission_direct",
+                                                               "transmission_indirect",
+                                                               "variance",
+                                                               "samples",
+                                                               "crypto_object",
+                                                               "crypto_material"};
 inline constexpr std::array<std::string_view, 4> kBuilderNames{"sah", "median", "fast", "high-quality"};
 inline constexpr std::array<std::string_view, 2> kLayoutNames{"full", "compact"};
 inline constexpr std::array<std::string_view, 6> kIsaNames{"auto", "scalar", "sse4", "avx2", "avx512", "neon"};

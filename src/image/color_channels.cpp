@@ -17,6 +17,7 @@ Image color_channels(const Image& image) {
     out.height = image.height;
     out.channels.assign(std::begin(names), std::end(names));
     out.metadata = image.metadata;
+    std::erase_if(out.metadata, [](const auto& attribute) { return attribute.first.starts_with("cryptomatte/"); });
     const size_t channels = image.channels.size(), pixels = image.pixels.size() / channels;
     out.pixels.reserve(pixels * 3);
     for (size_t i = 0; i < pixels; ++i)

@@ -134,6 +134,15 @@ Image read_luma_chroma(Reader& reader) {
                   static_cast<uint32_t>(part.data.height()));
 }
 
+/// Whether the channel is one of a Cryptomatte's, whose ids are bits and not numbers: NAME00.R and so on for a layer
+/// that the attribute cryptomatte/KEY/name tells.
+bool is_matte(const std::map<std::string, std::string>& strings, const std::string& channel) {
+    return std::any_of(strings.begin(), strings.end(), [&](const auto& attribute) {
+        const auto& [key, layer] = attribute;
+        return key.starts_with("cryptomatte/") && key.ends_with("/name") && channel.starts_with(layer);
+    });
+}
+
 /// All channels as floats over the data window, in the order that they were written in or else the usual one.
 Image read_channels(Reader& reader) {
     const ExrPart& part = reader.part();
@@ -158,7 +167,9 @@ Image read_channels(Reader& reader) {
     image.pixels.resize(size_t(image.width) * image.height * image.channels.size());
     read_interleaved(reader, image.channels, Imf::FLOAT, image.pixels.data());
     for (const std::string& name : image.channels)
-        image.types.push_back(part.find(name)->type == ExrType::uint32 ? ChannelType::uint32 : ChannelType::by_options);
+        image.types.push_back(part.find(name)->type == ExrType::uint32 ? ChannelType::uint32
+                              : is_matte(part.strings, name)           ? ChannelType::single
+                                                                       : ChannelType::by_options);
     return image;
 }
 

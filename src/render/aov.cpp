@@ -1,6 +1,9 @@
 #include "render/aov.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 
 #include "base/names.h"
 #include "image/codec.h"
@@ -29,6 +32,29 @@ struct Row {
 };
 
 constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::single, kWhole = ChannelType::uint32;
+
+/// The channels of one light part.
+void add_part(LightPart part, const std::string& layer, auto& channels) {
+    const auto mean = [part](double RgbSum::*channel) {
+        return [part, channel](const Sums& s, double n) {
+            return static_cast<float>(s.light.parts[static_cast<size_t>(part)].*channel / n);
+        };
+    };
+    channels.push_back({layer + ".R", ChannelType::by_options, mean(&RgbSum::r)});
+    channels.push_back({layer + ".G", ChannelType::by_options, mean(&RgbSum::g)});
+    channels.push_back({layer + ".B", ChannelType::by_options, mean(&RgbSum::b)});
+}
+
+/// Two ranks to a layer: id and coverage, id and coverage. A file must keep every bit of an id.
+void add_mattes(MatteCounts Sums::*counts, const std::string& name, auto& channels) {
+    for (uint32_t rank = 0; rank < kMatteRanks; ++rank) {
+        const std::string layer = fmt::format("{}{:02}", name, rank / 2);
+        channels.push_back({layer + (rank % 2 == 0 ? ".R" : ".B"), ChannelType::single,
+                            [=](const Sums& s, double) { return std::bit_cast<float>((s.*counts).covered(rank).id); }});
+        channels.push_back({layer + (rank % 2 == 0 ? ".G" : ".A"), ChannelType::single,
+                            [=](const Sums& s, double) { return (s.*counts).covered(rank).coverage; }});
+    }
+}
 
 /// docs/aovs.md has them with their reasons.
 constexpr Row kRows[] = {
@@ -63,6 +89,11 @@ PictureChannels::PictureChannels(AovSet aovs) {
     channels_.push_back({"B", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.b / n); }});
     for (const Row& row : kRows)
         if (aovs.has(row.aov)) channels_.push_back({row.name, row.type, row.value});
+    for (size_t i = 0; i < kLightParts; ++i)
+        if (const auto aov = static_cast<Aov>(static_cast<size_t>(Aov::emission) + i); aovs.has(aov))
+            add_part(static_cast<LightPart>(i), std::string(name_of(aov)), channels_);
+    if (aovs.has(Aov::crypto_object)) add_mattes(&Sums::objects, "CryptoObject", channels_);
+    if (aovs.has(Aov::crypto_material)) add_mattes(&Sums::materials, "CryptoMaterial", channels_);
     std::sort(channels_.begin(), channels_.end(),
               [](const Channel& a, const Channel& b) { return codec::channel_before(a.name, b.name); });
 }

@@ -1,6 +1,7 @@
 // From sums to the channels of a picture.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ private:
     struct Channel {
         std::string name;
         ChannelType type = ChannelType::by_options;
-        float (*value)(const PixelSums& sums, double samples) = nullptr;
+        std::function<float(const PixelSums& sums, double samples)> value;
     };
     std::vector<Channel> channels_;
 };

@@ -15,14 +15,13 @@ private:
     }
 
     void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
-        Path& path = this->path(id);
         if (!hit.found()) {
-            add_emission(path, sky_radiance(shading_, ray.d, depth == 0));
+            add_emission(id, sky_radiance(shading_, ray.d, depth == 0), true);
             return;
         }
         const SurfacePoint point = arrive(id, ray, hit);
         const Vec3 wo = -ray.d;
-        add_emission(path, emitted_radiance(shading_, point, wo));
+        add_emission(id, emitted_radiance(shading_, point, wo), false);
         if (depth >= c_.settings.max_depth) return;
         const Vertex vertex = vertex_at(point, wo);
         if (is_specular(vertex.bsdf))
@@ -31,9 +30,9 @@ private:
             sample_all_lights(id, vertex, kInfinity, [](uint32_t, float, float) { return 1.0f; });
     }
 
-    void add_emission(Path& path, Rgb radiance) noexcept {
-        const Rgb contribution = path.throughput * radiance;
-        path.radiance = path.radiance + contribution;
+    void add_emission(uint32_t id, Rgb radiance, bool background) noexcept {
+        const Rgb contribution = path(id).throughput * radiance;
+        gain(id, contribution, background);
         if (c_.recorder) c_.recorder->emission(radiance, 0, 0, 1, contribution);
     }
 
@@ -47,7 +46,7 @@ private:
         if (c_.recorder)
             c_.recorder->bounce({next->wi, next->weight, next->pdf, next->specular, next->transmitted, 1, true});
         path.throughput = path.throughput * next->weight;
-        turn(id, point, *next);
+        turn(id, point, bsdf, wo, *next);
         continue_along(id, spawn_ray(point, next->wi));
     }
 };

@@ -35,7 +35,7 @@ void FirstHits::see(uint32_t path, const SampleKey& key, const SurfacePoint& poi
     state.sample.primitive = point.prim + 1;
 }
 
-void FirstHits::add_to(TileSums& sums, uint32_t pixel, uint32_t path, float filter_weight) const noexcept {
+void FirstHits::add_to(TileSums& sums, uint32_t pixel, uint32_t path, float filter_weight) const {
     const State& state = states_[path];
     if (!sums.features.empty()) {
         FeatureSum& sum = sums.features[pixel];
@@ -47,6 +47,10 @@ void FirstHits::add_to(TileSums& sums, uint32_t pixel, uint32_t path, float filt
         }
     }
     if (!sums.centres.empty()) sums.centres[pixel] += state.sample;
+    const int32_t sign = filter_weight < 0 ? -1 : 1;
+    const auto id = [](const std::vector<uint32_t>& ids, uint32_t number) { return number > 0 ? ids[number - 1] : 0; };
+    if (!sums.objects.empty()) sums.objects[pixel].add(id(c_.mattes.objects, state.sample.object), sign);
+    if (!sums.materials.empty()) sums.materials[pixel].add(id(c_.mattes.materials, state.sample.material), sign);
 }
 
 }  // namespace steradian

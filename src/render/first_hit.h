@@ -20,8 +20,8 @@ public:
     void begin(uint32_t path, Vec2 offset) noexcept;
     /// The camera ray has arrived at `point`.
     void see(uint32_t path, const SampleKey& key, const SurfacePoint& point, Vec3 wo) noexcept;
-    /// Adds the sample to the sums of its pixel.
-    void add_to(TileSums& sums, uint32_t pixel, uint32_t path, float filter_weight) const noexcept;
+    /// Adds the sample to the sums of its pixel. May throw std::bad_alloc, where a pixel shows many mattes.
+    void add_to(TileSums& sums, uint32_t pixel, uint32_t path, float filter_weight) const;
 
 private:
     struct State {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/cryptomatte.h"
 #include "render/film.h"
 #include "render/render_scene.h"
 #include "shading/camera.h"
@@ -48,6 +49,7 @@ struct RenderContext {
     const std::atomic<bool>& cancelled;
     std::atomic<uint64_t>& rays;   ///< traced so far by all workers, for progress
     Recorder* recorder = nullptr;  ///< of the one sample that is replayed
+    MatteIds mattes{};             ///< of the things in the scene, where they are asked for
 };
 
 /// One per worker: it owns that worker's memory, reserved when it is made.
@@ -55,8 +57,9 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
     /// Adds the unit's samples to the sums of its tile, each pixel's in ascending order.
-    /// False when the job was cancelled on the way; the sums are then worthless.
-    virtual bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept = 0;
+    /// False when the job was cancelled on the way; the sums are then worthless. May throw std::bad_alloc, as sums of
+    /// mattes have no bound.
+    virtual bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) = 0;
 };
 
 /// The camera that the settings name; `usage` when the scene has no such camera, bad_input for a degenerate one.

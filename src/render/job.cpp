@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "render/cryptomatte.h"
 #include "render/film.h"
 #include "render/integrator.h"
 #include "render/memory_estimate.h"
@@ -50,9 +51,15 @@ public:
           execution_(execution),
           window_(window_of(settings)),
           film_(window_, execution.tile_size, settings.aovs),
-          context_{
-              *scene_,    settings_, camera, FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
-              cancelled_, rays_},
+          context_{*scene_,
+                   settings_,
+                   camera,
+                   FilterSampler(settings.filter),
+                   Sampler(settings.sampler, settings.seed),
+                   cancelled_,
+                   rays_,
+                   nullptr,
+                   MatteIds(scene_->shading.scene, settings.aovs)},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
 
     ~Job() override {
@@ -139,6 +146,7 @@ private:
         RenderSettings made_of = settings_;
         if (whole) made_of.samples_per_pixel = samples.min;
         image.metadata = picture_metadata(made_of, scene_->hash, samples.min, samples.max);
+        image.metadata.merge(matte_metadata(scene_->shading.scene, settings_.aovs));
         return image;
     }
 

@@ -75,9 +75,8 @@ private:
             density = expected_samples(state, light) * pdf_light(shading_, light, state.from, wi, at);
             weight = emission_weight(state.bsdf_pdf, density);
         }
-        Path& path = this->path(id);
-        const Rgb contribution = clamped(path.throughput * radiance * weight, limit_of(state, depth));
-        path.radiance = path.radiance + contribution;
+        const Rgb contribution = clamped(path(id).throughput * radiance * weight, limit_of(state, depth));
+        gain(id, contribution, at == nullptr);
         if (c_.recorder)
             c_.recorder->emission(radiance, state.bsdf_pdf, static_cast<float>(density), weight, contribution);
     }
@@ -127,7 +126,7 @@ private:
             c_.recorder->bounce(
                 {next->wi, next->weight, next->pdf, next->specular, next->transmitted, survival, survives});
         if (!survives) return;
-        turn(id, point, *next);
+        turn(id, point, at.bsdf, at.wo, *next);
         path.throughput = path.throughput / survival;
         continue_along(id, spawn_ray(point, next->wi));
     }

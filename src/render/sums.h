@@ -2,11 +2,13 @@
 // added up in the order of the samples and folded block by block, so none depends on who computed what when.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "math/vector.h"
+#include "render/cryptomatte.h"
 #include "steradian/settings.h"
 
 namespace steradian {
@@ -62,20 +64,48 @@ struct CentreSample {
     }
 };
 
+/// Into what radiance is divided by the first surface of its path; in the order of the AOVs.
+enum class LightPart : uint8_t {
+    emission,
+    background,
+    diffuse_direct,
+    diffuse_indirect,
+    specular_direct,
+    specular_indirect,
+    transmission_direct,
+    transmission_indirect
+};
+inline constexpr size_t kLightParts = 8;
+
+struct LightSum {
+    std::array<RgbSum, kLightParts> parts;
+    LightSum& operator+=(const LightSum& other) {
+        for (size_t i = 0; i < kLightParts; ++i) parts[i] += other.parts[i];
+        return *this;
+    }
+};
+
 /// Which sums a set of AOVs needs.
 struct SumKinds {
-    bool features = false, squares = false, centres = false;
+    bool features = false, squares = false, centres = false, light = false;
+    bool object_mattes = false, material_mattes = false;
 
     SumKinds() = default;
     explicit SumKinds(AovSet aovs)
         : features(aovs.has_any({Aov::alpha, Aov::albedo, Aov::normal})),
           squares(aovs.has(Aov::variance)),
-          centres(aovs.has_any({Aov::depth, Aov::position, Aov::uv, Aov::object, Aov::material, Aov::primitive})) {}
+          centres(aovs.has_any({Aov::depth, Aov::position, Aov::uv, Aov::object, Aov::material, Aov::primitive})),
+          light(aovs.has_any({Aov::emission, Aov::background, Aov::diffuse_direct, Aov::diffuse_indirect,
+                              Aov::specular_direct, Aov::specular_indirect, Aov::transmission_direct,
+                              Aov::transmission_indirect})),
+          object_mattes(aovs.has(Aov::crypto_object)),
+          material_mattes(aovs.has(Aov::crypto_material)) {}
     /// Whether anything is to be known of the surfaces that camera rays meet.
-    bool first_hits() const { return features || centres; }
+    bool first_hits() const { return features || centres || object_mattes || material_mattes; }
     uint64_t bytes_per_pixel() const {
         return sizeof(RgbSum) + features * sizeof(FeatureSum) + squares * sizeof(SquareSum) +
-               centres * sizeof(CentreSample);
+               centres * sizeof(CentreSample) + light * sizeof(LightSum) +
+               (object_mattes + material_mattes) * MatteCounts::typical_bytes();
     }
 };
 
@@ -85,6 +115,8 @@ struct PixelSums {
     FeatureSum features;
     SquareSum squares;
     CentreSample centre;
+    LightSum light;
+    MatteCounts objects, materials;
 };
 
 /// Each array has an element for each pixel of the tile, row by row, or none where nobody asked.
@@ -93,13 +125,18 @@ struct TileSums {
     std::vector<FeatureSum> features;
     std::vector<SquareSum> squares;
     std::vector<CentreSample> centres;
+    std::vector<LightSum> light;
+    std::vector<MatteCounts> objects, materials;
 
     TileSums() = default;
     TileSums(size_t pixels, SumKinds kinds)
         : color(pixels),
           features(kinds.features ? pixels : 0),
           squares(kinds.squares ? pixels : 0),
-          centres(kinds.centres ? pixels : 0) {}
+          centres(kinds.centres ? pixels : 0),
+          light(kinds.light ? pixels : 0),
+          objects(kinds.object_mattes ? pixels : 0),
+          materials(kinds.material_mattes ? pixels : 0) {}
 
     /// Adds what comes after it in the order of the samples.
     TileSums& operator+=(const TileSums& later) {
@@ -108,6 +145,7 @@ struct TileSums {
         };
         fold(color, later.color), fold(features, later.features);
         fold(squares, later.squares), fold(centres, later.centres);
+        fold(light, later.light), fold(objects, later.objects), fold(materials, later.materials);
         return *this;
     }
     /// As if `later` had been added.
@@ -122,6 +160,8 @@ struct TileSums {
         const TileSums& more = later ? *later : nothing;
         take(out.color, color, more.color), take(out.features, features, more.features);
         take(out.squares, squares, more.squares), take(out.centre, centres, more.centres);
+        take(out.light, light, more.light), take(out.objects, objects, more.objects);
+        take(out.materials, materials, more.materials);
         return out;
     }
 };

@@ -22,14 +22,17 @@ uint64_t WavefrontIntegrator::bytes(uint32_t max_tile_pixels) noexcept {
 }
 
 uint64_t WavefrontIntegrator::aov_bytes(AovSet aovs, uint32_t max_tile_pixels) noexcept {
-    return capacity(max_tile_pixels) * FirstHits::bytes_per_path(aovs);
+    const uint64_t splits = SumKinds(aovs).light ? kBatchShadowRays * sizeof(LightSplit) : 0;
+    return capacity(max_tile_pixels) * (FirstHits::bytes_per_path(aovs) + LightParts::bytes_per_path(aovs)) + splits;
 }
 
 WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels)
     : c_(context),
       shading_(context.scene.shading),
       capacity_(capacity(max_tile_pixels)),
-      first_hits_(context, capacity(max_tile_pixels)) {
+      first_hits_(context, capacity(max_tile_pixels)),
+      parts_(context, capacity(max_tile_pixels)) {
+    if (parts_.wanted()) splits_.reserve(kBatchShadowRays);
     pixels_.reserve(max_tile_pixels);
     paths_.resize(capacity_);
     active_.reserve(capacity_);
@@ -43,7 +46,7 @@ WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t 
     occluded_.resize(kBatchShadowRays);
 }
 
-bool WavefrontIntegrator::render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept {
+bool WavefrontIntegrator::render(const WorkUnit& unit, TileSums& sums, Counters& counters) {
     counters_ = &counters;
     const uint32_t pixels = unit.tile.pixels();
     const uint32_t step = std::max(1u, capacity_ / pixels);
@@ -92,6 +95,7 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
                         static_cast<float>(path.y) + 0.5f + position.offset.y};
         if (c_.recorder) c_.recorder->camera(film, path.weight);
         if (first_hits_.wanted()) first_hits_.begin(i, position.offset);
+        if (parts_.wanted()) parts_.begin(i);
         if (!c_.camera.sees(film)) continue;
         const Vec2 lens = c_.camera.has_lens() ? c_.sampler.get_2d(path.key, kLensDimension) : Vec2{};
         rays_.push_back(c_.camera.generate(film, lens));
@@ -206,13 +210,16 @@ void WavefrontIntegrator::trace_shadow_rays() noexcept {
         const bool blocked = occluded[i] == Accel::blocked || !(passes > 0);
         if (c_.recorder) c_.recorder->shadow(blocked ? 0 : passes);
         if (blocked) continue;
-        const Rgb contribution = connections_[i].contribution;
-        Rgb& radiance = paths_[connections_[i].path].radiance;
-        radiance = radiance + (passes < 1 ? contribution * passes : contribution);
+        const uint32_t id = connections_[i].path;
+        Rgb contribution = connections_[i].contribution;
+        if (passes < 1) contribution = contribution * passes;
+        paths_[id].radiance = paths_[id].radiance + contribution;
+        if (parts_.wanted()) parts_.add(id, splits_[i], contribution);
     }
     counters_->shadow_rays += shadow_rays_.size();
     shadow_rays_.clear();
     connections_.clear();
+    splits_.clear();
 }
 
 /// Calls trace(index of the first, number) for one slice of so many rays after the other, until all are done or the job
@@ -226,7 +233,7 @@ void WavefrontIntegrator::in_slices(size_t rays, Trace trace) const noexcept {
     }
 }
 
-void WavefrontIntegrator::accumulate(uint32_t count, TileSums& sums) noexcept {
+void WavefrontIntegrator::accumulate(uint32_t count, TileSums& sums) {
     for (uint32_t i = 0; i < count; ++i) {
         const Path& path = paths_[i];
         const Rgb l = path.radiance;
@@ -235,6 +242,7 @@ void WavefrontIntegrator::accumulate(uint32_t count, TileSums& sums) noexcept {
         if (good) {
             sums.color[path.pixel].add(l, path.weight);
             if (!sums.squares.empty()) sums.squares[path.pixel].add(l, path.weight);
+            if (!sums.light.empty()) parts_.add_to(sums.light[path.pixel], i, path.weight);
             counters_->good(sample);
         } else {
             counters_->bad(sample);

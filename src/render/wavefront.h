@@ -7,6 +7,7 @@
 
 #include "render/first_hit.h"
 #include "render/integrator.h"
+#include "render/light_parts.h"
 #include "render/recorder.h"
 #include "shading/bsdf.h"
 #include "shading/light.h"
@@ -34,7 +35,7 @@ inline Rgb clamped(Rgb contribution, float limit) {
 class WavefrontIntegrator : public Integrator {
 public:
     WavefrontIntegrator(const RenderContext& context, uint32_t max_tile_pixels);
-    bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) noexcept final;
+    bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) final;
 
     /// Paths under way at a time, and what they take.
     static uint32_t capacity(uint32_t max_tile_pixels) noexcept;
@@ -72,6 +73,12 @@ protected:
     /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`. Rays of one `group`,
     /// such as those towards one light, are traced together.
     void connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept;
+    /// The path's radiance grows by emission that its ray has found, of a surface or of the background.
+    void gain(uint32_t id, Rgb contribution, bool background) noexcept {
+        Path& path = paths_[id];
+        path.radiance = path.radiance + contribution;
+        if (parts_.wanted()) parts_.found(id, contribution, background);
+    }
 
     /// Where a ray of a path has arrived.
     SurfacePoint arrive(uint32_t id, const Ray& ray, const Hit& hit) noexcept {
@@ -85,7 +92,8 @@ protected:
         return out;
     }
     /// The path turns at `point`.
-    void turn(uint32_t id, const SurfacePoint& point, const BsdfSample& next) noexcept {
+    void turn(uint32_t id, const SurfacePoint& point, const Bsdf& bsdf, Vec3 wo, const BsdfSample& next) noexcept {
+        if (parts_.wanted()) parts_.turn(id, bsdf, wo, next);
         if (shading_.uses_footprints()) paths_[id].cone = bounced(paths_[id].cone, shading_, point, next);
     }
 
@@ -137,7 +145,7 @@ private:
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;
     void record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept;
-    void accumulate(uint32_t count, TileSums& sums) noexcept;
+    void accumulate(uint32_t count, TileSums& sums);
     template <class Trace>
     void in_slices(size_t rays, Trace trace) const noexcept;
 
@@ -154,6 +162,8 @@ private:
     std::vector<uint32_t> shadow_order_;  ///< in which they are traced
     std::vector<uint8_t> occluded_;       ///< an Accel::Occlusion each
     FirstHits first_hits_;
+    LightParts parts_;
+    std::vector<LightSplit> splits_;  ///< of the shadow rays, where parts are wanted
 };
 
 template <class Weight>
@@ -169,7 +179,9 @@ void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t
     if (c_.recorder)
         c_.recorder->light(
             {light, {}, towards->wi, towards->pdf, scattered.pdf, mis_weight, contribution, brings, false});
-    if (brings) connect(id, light, towards->shadow_ray, contribution);
+    if (!brings) return;
+    connect(id, light, towards->shadow_ray, contribution);
+    if (parts_.wanted()) splits_.push_back(parts_.split(id, at.bsdf, at.wo, towards->wi, scattered));
 }
 
 template <class Weight>

@@ -107,6 +107,7 @@ struct Bsdf {
 struct BsdfEval {
     Rgb f_cos;      ///< f · |cos θ_i|; 0 for specular lobes
     float pdf = 0;  ///< of `sample` choosing wi
+    Rgb diffuse{};  ///< what of f_cos comes from matte and fuzzy layers
 };
 
 struct BsdfSample {

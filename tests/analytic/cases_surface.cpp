@@ -106,7 +106,7 @@ void add_textures(std::vector<Case>& out) {
     const auto grey = static_cast<float>(linear);
     Case srgb = whole("texture_srgb_png", "((c/255 + 0.055) / 1.055)^2.4 for c = 188",
                       tile_scene(Object("image").set("path", "grey.png")), linear);
-    srgb.files = {{"grey.png", Image{2, 2, {"R", "G", "B"}, std::vector<float>(12, grey), {}, {}}}};
+    srgb.files = {{"grey.png", Image{2, 2, {"R", "G", "B"}, std::vector<float>(12, grey), {}}}};
     srgb.expected[0].every_pixel = true;
     out.push_back(srgb);
 }

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace steradian {
@@ -20,6 +22,27 @@ TEST(Hasher, KnownDigests) {
     EXPECT_EQ(hash_of(""), "99aa06d3014798d86001c324468d497f");
     EXPECT_EQ(hash_of("a"), "a96faf705af16834e6c632b61e964e1f");
     EXPECT_EQ(hash_of("abc"), "06b05ab6733a618578af5f94892f3950");
+}
+
+// The values of the algorithm's author (SMHasher) as they are published with many implementations: all lengths of
+// tails.
+TEST(MurmurHash3, KnownValues) {
+    const std::tuple<std::string_view, uint32_t, uint32_t> known[] = {
+        {"", 0, 0},
+        {"", 1, 0x514e28b7},
+        {"", 0xffffffff, 0x81f16f39},
+        {"\xff\xff\xff\xff", 0, 0x76293b50},
+        {"\x21\x43\x65\x87", 0, 0xf55b516b},
+        {"\x21\x43\x65\x87", 0x5082edee, 0x2362f9de},
+        {"\x21\x43\x65", 0, 0x7e4a8634},
+        {"\x21\x43", 0, 0xa0f7b07a},
+        {"\x21", 0, 0x72661cf4},
+        {"aaaa", 0x9747b28c, 0x5a97808a},
+        {"aaa", 0x9747b28c, 0x283e0130},
+        {"abc", 0, 0xb3dd93fa},
+        {"Hello, world!", 0x9747b28c, 0x24884cba},
+        {"The quick brown fox jumps over the lazy dog", 0x9747b28c, 0x2fa826cd}};
+    for (const auto& [bytes, seed, hash] : known) EXPECT_EQ(murmur_hash3(bytes, seed), hash) << bytes;
 }
 
 TEST(Hasher, PiecesDoNotMatter) {

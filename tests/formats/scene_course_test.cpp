@@ -150,7 +150,7 @@ TEST(CourseScene, EnvironmentMaps) {
     EXPECT_EQ(environment(", \"transform\": [[0,0,1,0],[0,1,0,0],[-1,0,0,0],[0,0,0,1]]").radiance, (Rgb{1, 2, 3}));
 
     TemporaryFolder folder;
-    Image image{2, 1, {"R", "G", "B"}, {0, 0.5f, 1, 1, 0.5f, 0}, {}, {}};
+    Image image{2, 1, {"R", "G", "B"}, {0, 0.5f, 1, 1, 0.5f, 0}, {}};
     ASSERT_TRUE(write_image(folder.file("sky.hdr"), image).ok());
     const std::string textures =
         "\"textures\": {\"sky\": {\"type\": \"image\", \"path\": \"sky.hdr\"}}, \"environment_map\": "

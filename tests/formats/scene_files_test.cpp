@@ -23,7 +23,7 @@ protected:
         spit(folder_.path() / "triangle.obj", kTriangle);
         spit(folder_.path() / "two.obj", kTwoParts);
         spit(folder_.path() / "two.mtl", kTwoMaterials);
-        Image image{2, 1, {"R", "G", "B"}, {0, 0.5f, 1, 1, 0.5f, 0}, {}, {}};
+        Image image{2, 1, {"R", "G", "B"}, {0, 0.5f, 1, 1, 0.5f, 0}, {}};
         for (const char* name : {"image.png", "image.exr", "image.hdr"})
             ASSERT_TRUE(write_image(folder_.file(name), image).ok());
     }

@@ -89,10 +89,10 @@ TEST(Aovs, AFilmInPartsIsTheFilm) {
 
 TEST(Aovs, OnlyThoseThatWereAskedFor) {
     const auto scene = prepared(floor_scene());
+    const Image all = run(scene, settings_with(AovSet::all())).image;
     for (uint32_t i = 0; i < kAovs; ++i) {
         const auto aov = static_cast<Aov>(i);
         const Image one = run(scene, settings_with({aov})).image;
-        const Image all = run(scene, settings_with(AovSet::all())).image;
         EXPECT_GT(one.channels.size(), 3u) << name_of(aov);
         for (const std::string& name : one.channels) EXPECT_EQ(channel(one, name), channel(all, name)) << name;
     }
@@ -234,7 +234,9 @@ TEST(Aovs, AreInTheEstimateOfMemory) {
     EXPECT_LE(picture_bytes(all, {1}), picture_bytes(plain, {1}) + (per_pixel << 20) + (16 << 20));
     const TileSums tile(100, SumKinds(AovSet::all()));
     EXPECT_EQ(tile.color.size() * sizeof(RgbSum) + tile.features.size() * sizeof(FeatureSum) +
-                  tile.squares.size() * sizeof(SquareSum) + tile.centres.size() * sizeof(CentreSample),
+                  tile.squares.size() * sizeof(SquareSum) + tile.centres.size() * sizeof(CentreSample) +
+                  tile.light.size() * sizeof(LightSum) +
+                  (tile.objects.size() + tile.materials.size()) * MatteCounts::typical_bytes(),
               100 * SumKinds(AovSet::all()).bytes_per_pixel());
 }
 

@@ -63,6 +63,7 @@ inline BsdfEval eval_rough_diffuse(const DiffuseBsdf& lobe, const LobeGeometry& 
         out.f_cos[c] =
             static_cast<float>(model.pi_f(lobe.reflectance[c], mu_o, mu_i, s, lost) * mu_i / std::numbers::pi);
     const double share = uniform_share(lobe, mu_o);
+    out.diffuse = out.f_cos;
     out.pdf = static_cast<float>((1 - share) * mu_i / std::numbers::pi + share * warp::kHemispherePdf);
     return out;
 }
@@ -72,7 +73,8 @@ inline BsdfEval eval_lobe(const DiffuseBsdf& lobe, const LobeGeometry& g, Vec3 w
     if (side == 0 || (side < 0 && !lobe.two_sided) || side_by_both_normals(g, wi) != side) return {};
     if (lobe.roughness > 0) return eval_rough_diffuse(lobe, g, wo, wi);
     const float density = std::fabs(dot(wi, g.frame.z)) * kInvPi;
-    return {lobe.reflectance * density, density};
+    const Rgb f_cos = lobe.reflectance * density;
+    return {f_cos, density, f_cos};
 }
 
 /// By the cosine about the shading normal. Directions that are behind the geometric surface are given up, not redrawn:

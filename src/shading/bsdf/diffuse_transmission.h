@@ -23,8 +23,8 @@ inline BsdfEval eval_lobe(const DiffuseTransmissionBsdf& lobe, const LobeGeometr
     const int from = side_by_both_normals(g, wo), to = side_by_both_normals(g, wi);
     if (from == 0 || to == 0) return {};
     const float density = std::fabs(dot(wi, g.frame.z)) * kInvPi, share = reflected_share(lobe);
-    if (from == to) return {lobe.reflectance * density, share * density};
-    return {lobe.transmittance * density, (1 - share) * density};
+    const Rgb f_cos = (from == to ? lobe.reflectance : lobe.transmittance) * density;
+    return {f_cos, (from == to ? share : 1 - share) * density, f_cos};
 }
 
 inline std::optional<BsdfSample> sample_lobe(const DiffuseTransmissionBsdf& lobe, const LobeGeometry& g, Vec3 wo,

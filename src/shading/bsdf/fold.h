@@ -43,7 +43,7 @@ BsdfEval eval_folded(const AnyLobe& lobe, const LobeGeometry& g, Vec3 wo, Vec3 w
     if (side_of(wi, n) == side) out = eval_flat(lobe, alone, wo, wi);
     if (side_of(image, n) != side) return out;
     const BsdfEval from_image = eval_flat(lobe, alone, wo, image);
-    return {out.f_cos + from_image.f_cos, out.pdf + from_image.pdf};
+    return {out.f_cos + from_image.f_cos, out.pdf + from_image.pdf, out.diffuse + from_image.diffuse};
 }
 
 template <class AnyLobe>

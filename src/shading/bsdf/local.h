@@ -13,6 +13,7 @@ struct LocalEval {
     Rgb f_cos;
     double pdf = 0;             ///< of sample_local choosing wi
     double radiance_scale = 1;  ///< the (η_i/η_t)² that is part of f_cos
+    Rgb diffuse{};              ///< as in BsdfEval
 };
 
 /// The frame as seen from wo, and where the surface itself lies in it.
@@ -52,7 +53,7 @@ BsdfEval eval_by_frame(const Lobe& lobe, const LobeGeometry& g, Vec3 wo, Vec3 wi
     const auto frame = LocalFrame::seen_from(g, wo);
     if (!frame) return {};
     const LocalEval e = eval_in_frame(lobe, *frame, wo, wi);
-    return {e.f_cos, static_cast<float>(e.pdf)};
+    return {e.f_cos, static_cast<float>(e.pdf), e.diffuse};
 }
 
 /// The direction is rounded to float first: weight and density are those of what is returned, to the bit those of eval.

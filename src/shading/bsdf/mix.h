@@ -29,6 +29,7 @@ inline BsdfEval eval_lobe(const MixBsdf& mix, const LobeGeometry& g, Vec3 wo, Ve
         const BsdfEval e = eval_any(part.lobe, {g.ng, part.frame}, part.folded, wo, wi);
         out.f_cos = out.f_cos + e.f_cos * part.weight;
         out.pdf += e.pdf * part.weight;
+        out.diffuse = out.diffuse + e.diffuse * part.weight;
     }
     return out;
 }

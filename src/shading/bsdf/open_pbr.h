@@ -209,24 +209,28 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
     const OpenPbrTables& t = *lobe.tables;
     LocalEval out;
     const auto add = [&](const LocalEval& e, double share, double p, Rgb tint) {
-        out.f_cos = out.f_cos + e.f_cos * tint * static_cast<float>(share);
+        const Rgb f_cos = e.f_cos * tint * static_cast<float>(share);
+        out.f_cos = out.f_cos + f_cos;
         out.pdf += p * e.pdf;
+        return f_cos;
     };
     const Rgb below = coat_tint(lobe, wo, wi);
     if (wi.z > 0) {
-        if (s.p_fuzz > 0) add({t.fuzz->eval(wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz, lobe.fuzz_color);
+        if (s.p_fuzz > 0)
+            out.diffuse = add({t.fuzz->eval(wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz, lobe.fuzz_color);
         if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, nullptr, wo, wi), s.coat, s.p_coat, {1, 1, 1});
         if (s.p_metal > 0) add(eval_local(lobe.metal, wo, wi, outside), s.metal, s.p_metal, below);
         if (s.p_dielectric > 0)
             add(eval_dielectric(lobe.metal.facets, t.eta_outside, t.dielectric_film.get(), wo, wi), s.dielectric,
                 s.p_dielectric, lobe.specular_color * below);
         if (s.p_diffuse > 0)
-            add({eval_open_pbr_diffuse(lobe, wo, wi), open_pbr_diffuse_pdf(lobe, wo.z, wi.z)}, s.diffuse, s.p_diffuse,
-                below * s.diffuse_tint);
+            out.diffuse =
+                out.diffuse + add({eval_open_pbr_diffuse(lobe, wo, wi), open_pbr_diffuse_pdf(lobe, wo.z, wi.z)},
+                                  s.diffuse, s.p_diffuse, below * s.diffuse_tint);
     } else if (s.p_through > 0) {
         const auto cosine = static_cast<float>(-wi.z / std::numbers::pi);
         const Rgb f = lobe.subsurface_color * (lobe.subsurface * lobe.passed_share * cosine);
-        add({f, -wi.z / std::numbers::pi}, s.diffuse, s.p_through, below * s.diffuse_tint);
+        out.diffuse = add({f, -wi.z / std::numbers::pi}, s.diffuse, s.p_through, below * s.diffuse_tint);
     }
     if (s.p_glass > 0 && lobe.thin_walled) {
         add(eval_wall(lobe.glass, *t.metal, wo, wi), s.glass, s.p_glass, below);
