@@ -149,10 +149,11 @@ Meshes::Key Meshes::key_of(const Object& primitive, const Object& attributes, co
     key.colors = accessor(attributes, "COLOR_0");
     key.indices = accessor(primitive, "indices");
     key.mode = mode;
-    key.uv_sets = look.uv_sets;
+    // The first set is there to look at (the uv integrator and AOV) even where no texture reads it.
+    key.uv_sets = look.uv_sets | (attributes.has("TEXCOORD_0") ? 1u : 0u);
     key.uvs.fill(kNone);
     for (uint32_t set = 0; set < kMaxUvSets; ++set)
-        if (look.uv_sets >> set & 1) key.uvs[set] = accessor(attributes, "TEXCOORD_" + std::to_string(set));
+        if (key.uv_sets >> set & 1) key.uvs[set] = accessor(attributes, "TEXCOORD_" + std::to_string(set));
     // Flat normals leave no use for tangents of vertices (section 3.7.2.1 of the specification).
     if (look.tangents && key.normals != kNone) {
         key.tangents = accessor(attributes, "TANGENT");
