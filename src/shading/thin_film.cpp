@@ -66,7 +66,7 @@ struct Wavelengths {
     std::vector<double> at;
     std::vector<Vec3d> weight;
     explicit Wavelengths(double thickness) {
-        const auto count = static_cast<size_t>(70 * max_of(1.0, thickness / 2));
+        const auto count = static_cast<size_t>(140 * max_of(1.0, thickness));
         Vec3d sum;
         for (size_t i = 0; i < count; ++i) {
             const double t = (double(i) + 0.5) / double(count);

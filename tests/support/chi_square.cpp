@@ -133,7 +133,8 @@ ChiSquare chi_square_directions(const std::function<std::optional<Vec3>(uint64_t
             const auto cell = static_cast<size_t>(row * phi_bins + column);
             Integral mass = integrate_cell(density, z0, z1, phi0, phi1, count);
             // A cell that the support of the density only touches may be missed by a few points.
-            if (mass.value == 0 && observed[cell] > 0) mass.value = midpoint(density, z0, z1, phi0, phi1, 512);
+            for (int side = 512; mass.value == 0 && observed[cell] > 0 && side <= 4096; side *= 8)
+                mass.value = midpoint(density, z0, z1, phi0, phi1, side);
             expected[cell] = mass.value * count;
             total += mass.value, error += mass.error;
         }
