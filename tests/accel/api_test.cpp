@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "accel/kernels/kernels.h"
-#include "scenes.h"
+#include "brute_force.h"
 
 namespace steradian::test {
 namespace {

@@ -9,8 +9,8 @@
 #include "accel/bvh.h"
 #include "accel/wide_node.h"
 #include "base/parallel.h"
+#include "brute_force.h"
 #include "math/transform.h"
-#include "scenes.h"
 #include "support/support.h"
 
 namespace steradian::test {

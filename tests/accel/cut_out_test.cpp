@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/geometry.h"
+#include "brute_force.h"
 #include "options.h"
-#include "scenes.h"
 #include "support/support.h"
 
 namespace steradian::test {

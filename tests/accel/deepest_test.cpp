@@ -3,7 +3,7 @@
 
 #include "accel/compact.h"
 #include "accel/kernels/kernels.h"
-#include "scenes.h"
+#include "brute_force.h"
 
 namespace steradian::test {
 namespace {

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "accel/world.h"
+#include "brute_force.h"
 #include "hostile.h"
 #include "options.h"
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "brute_force.h"
 #include "math/transform.h"
 #include "options.h"
-#include "scenes.h"
 #include "support/support.h"
 
 namespace steradian::test {

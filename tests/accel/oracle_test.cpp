@@ -6,7 +6,7 @@
 
 #include "accel/kernels/kernels.h"
 #include "base/names.h"
-#include "scenes.h"
+#include "brute_force.h"
 #include "support/support.h"
 
 namespace steradian::test {

@@ -6,8 +6,8 @@
 #include "accel/kernels/kernels.h"
 #include "base/names.h"
 #include "base/parallel.h"
+#include "brute_force.h"
 #include "math/transform.h"
-#include "scenes.h"
 #include "support/support.h"
 
 namespace steradian::test {

@@ -1,4 +1,4 @@
-// Geometry that is hard on a ray tracer, rays that look for trouble, and the loop over everything that is always right.
+// Geometry that is hard on a ray tracer, and rays that look for trouble.
 #pragma once
 
 #include <functional>
@@ -53,26 +53,5 @@ std::vector<TestScene> hard_scenes();
 /// Random, aimed at points (vertices, edges), parallel to an axis, from surfaces, with ranges cut short, not
 /// normalised.
 std::vector<Ray> hard_rays(const TestScene& scene, size_t count, uint64_t seed);
-
-/// The definition of a hit, literally: every candidate of every primitive of every instance, in order.
-class BruteForce {
-public:
-    explicit BruteForce(const TestScene& scene);
-    ~BruteForce();
-    std::vector<Hit> all_hits(const Ray& ray) const;
-    Hit first_hit(const Ray& ray) const;
-    Accel::Occlusion occlusion(const Ray& ray) const;
-
-private:
-    template <class Sink>
-    void each(const Ray& ray, Sink sink) const;
-    struct Data;
-    std::unique_ptr<Data> data_;
-};
-
-/// Every bit of every member.
-bool same_bits(const Hit& a, const Hit& b);
-std::string describe(const Ray& ray);
-std::string describe(const Hit& hit);
 
 }  // namespace steradian::test

@@ -7,7 +7,7 @@
 #include "accel/bvh.h"
 #include "accel/geometry.h"
 #include "accel/kernels/kernels.h"
-#include "scenes.h"
+#include "brute_force.h"
 #include "support/support.h"
 
 namespace steradian::test {

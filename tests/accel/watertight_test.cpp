@@ -1,7 +1,7 @@
 // Closed meshes let no ray through, whatever it is aimed at.
 #include <gtest/gtest.h>
 
-#include "scenes.h"
+#include "brute_force.h"
 #include "support/support.h"
 
 namespace steradian::test {
