@@ -4,19 +4,15 @@
 #include <cmath>
 
 #include "base/names.h"
-#include "steradian/render.h"
+#include "render_support.h"
 #include "support/support.h"
 #include "test_scenes.h"
 
 namespace steradian {
 namespace {
 
-std::shared_ptr<const RenderScene> prepared(Scene scene) {
-    Diagnostics diagnostics;
-    auto result = prepare(std::move(scene), {}, diagnostics);
-    if (!result) throw std::runtime_error(result.error().str());
-    return *result;
-}
+using test::prepared;
+using test::run;
 
 RenderSettings settings_of(IntegratorKind kind) {
     RenderSettings s;
@@ -26,15 +22,6 @@ RenderSettings settings_of(IntegratorKind kind) {
     s.samples_per_pixel = 70;  // one whole block and an open one
     s.filter = {FilterKind::box, 0.5f};
     return s;
-}
-
-RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSettings& settings,
-                 const Execution& execution = {}) {
-    auto job = RenderJob::start(scene, settings, execution);
-    if (!job) throw std::runtime_error(job.error().str());
-    auto result = (*job)->take();
-    if (!result) throw std::runtime_error(result.error().str());
-    return std::move(*result);
 }
 
 std::vector<IntegratorKind> all_integrators() {

@@ -3,28 +3,16 @@
 
 #include <cmath>
 
-#include "steradian/render.h"
+#include "render_support.h"
 #include "support/support.h"
 #include "test_scenes.h"
 
 namespace steradian {
 namespace {
 
-std::shared_ptr<const RenderScene> prepared() {
-    Diagnostics diagnostics;
-    auto result = prepare(test::everything_scene(), {}, diagnostics);
-    EXPECT_TRUE(result.ok());
-    return std::move(*result);
-}
+using test::run;
 
-RenderResult run(const std::shared_ptr<const RenderScene>& scene, const RenderSettings& settings,
-                 const Execution& execution = {}) {
-    auto job = RenderJob::start(scene, settings, execution);
-    EXPECT_TRUE(job.ok()) << (job.ok() ? "" : job.error().str());
-    auto result = (*job)->take();
-    EXPECT_TRUE(result.ok());
-    return std::move(*result);
-}
+std::shared_ptr<const RenderScene> prepared() { return test::prepared(test::everything_scene()); }
 
 RenderSettings square(uint32_t side, uint64_t samples) {
     RenderSettings s;
