@@ -34,11 +34,10 @@ struct Row {
 constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::single, kWhole = ChannelType::uint32;
 
 /// The channels of one light part.
-void add_part(LightPart part, const std::string& layer, auto& channels) {
+void add_part(size_t part, const std::string& layer, auto& channels) {
     const auto mean = [part](double RgbSum::*channel) {
-        return [part, channel](const Sums& s, double n) {
-            return static_cast<float>(s.light.parts[static_cast<size_t>(part)].*channel / n);
-        };
+        return
+            [part, channel](const Sums& s, double n) { return static_cast<float>(s.light.parts[part].*channel / n); };
     };
     channels.push_back({layer + ".R", ChannelType::by_options, mean(&RgbSum::r)});
     channels.push_back({layer + ".G", ChannelType::by_options, mean(&RgbSum::g)});
@@ -90,8 +89,8 @@ PictureChannels::PictureChannels(AovSet aovs) {
     for (const Row& row : kRows)
         if (aovs.has(row.aov)) channels_.push_back({row.name, row.type, row.value});
     for (size_t i = 0; i < kLightParts; ++i)
-        if (const auto aov = static_cast<Aov>(static_cast<size_t>(Aov::emission) + i); aovs.has(aov))
-            add_part(static_cast<LightPart>(i), std::string(name_of(aov)), channels_);
+        if (const auto aov = static_cast<Aov>(static_cast<size_t>(kFirstLightPart) + i); aovs.has(aov))
+            add_part(i, std::string(name_of(aov)), channels_);
     if (aovs.has(Aov::crypto_object)) add_mattes(&Sums::objects, "CryptoObject", channels_);
     if (aovs.has(Aov::crypto_material)) add_mattes(&Sums::materials, "CryptoMaterial", channels_);
     std::sort(channels_.begin(), channels_.end(),

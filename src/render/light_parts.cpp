@@ -25,7 +25,7 @@ uint64_t LightParts::bytes_per_path(AovSet aovs) noexcept { return SumKinds(aovs
 void LightParts::found(uint32_t path, Rgb contribution, bool background) noexcept {
     State& state = states_[path];
     if (state.stage == Stage::camera) {
-        Rgb& seen = part(state, background ? LightPart::background : LightPart::emission);
+        Rgb& seen = part(state, background ? Aov::background : Aov::emission);
         seen = seen + contribution;
         return;
     }
@@ -45,12 +45,12 @@ LightSplit LightParts::split(uint32_t path, const Bsdf& bsdf, Vec3 wo, Vec3 wi,
 void LightParts::add(uint32_t path, const LightSplit& split, Rgb contribution) noexcept {
     State& state = states_[path];
     if (split.transmitted) {
-        Rgb& sum = part(state, split.direct ? LightPart::transmission_direct : LightPart::transmission_indirect);
+        Rgb& sum = part(state, split.direct ? Aov::transmission_direct : Aov::transmission_indirect);
         sum = sum + contribution;
         return;
     }
-    Rgb& diffuse = part(state, split.direct ? LightPart::diffuse_direct : LightPart::diffuse_indirect);
-    Rgb& specular = part(state, split.direct ? LightPart::specular_direct : LightPart::specular_indirect);
+    Rgb& diffuse = part(state, split.direct ? Aov::diffuse_direct : Aov::diffuse_indirect);
+    Rgb& specular = part(state, split.direct ? Aov::specular_direct : Aov::specular_indirect);
     const Rgb share = contribution * split.diffuse;
     diffuse = diffuse + share;
     specular = specular + Rgb{contribution.r - share.r, contribution.g - share.g, contribution.b - share.b};

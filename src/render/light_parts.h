@@ -41,7 +41,7 @@ private:
         LightSplit split;  ///< of the first surface, for the direction in which the path has gone on
         std::array<Rgb, kLightParts> parts{};
     };
-    Rgb& part(State& state, LightPart part) noexcept { return state.parts[static_cast<size_t>(part)]; }
+    Rgb& part(State& state, Aov part) noexcept { return state.parts[light_part(part)]; }
 
     std::vector<State> states_;
 };

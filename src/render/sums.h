@@ -64,18 +64,10 @@ struct CentreSample {
     }
 };
 
-/// Into what radiance is divided by the first surface of its path; in the order of the AOVs.
-enum class LightPart : uint8_t {
-    emission,
-    background,
-    diffuse_direct,
-    diffuse_indirect,
-    specular_direct,
-    specular_indirect,
-    transmission_direct,
-    transmission_indirect
-};
-inline constexpr size_t kLightParts = 8;
+/// Radiance is divided by the first surface of its path, into the AOVs from `emission` to `transmission_indirect`.
+inline constexpr Aov kFirstLightPart = Aov::emission, kLastLightPart = Aov::transmission_indirect;
+constexpr size_t light_part(Aov aov) { return static_cast<size_t>(aov) - static_cast<size_t>(kFirstLightPart); }
+inline constexpr size_t kLightParts = light_part(kLastLightPart) + 1;
 
 struct LightSum {
     std::array<RgbSum, kLightParts> parts;
