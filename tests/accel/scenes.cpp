@@ -1,14 +1,11 @@
 #include "scenes.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdio>
+#include <cmath>
 #include <map>
 
-#include "accel/margin.h"
-#include "accel/planar.h"
-#include "accel/sphere.h"
-#include "accel/triangle.h"
+#include "accel/box.h"
+#include "math/transform.h"
 
 namespace steradian::test {
 
