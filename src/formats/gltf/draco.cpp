@@ -97,12 +97,19 @@ draco::Status decode(std::span<const std::byte> bytes, const Afford& afford, dra
 
 // --- From the library's attributes to elements of accessors ---
 
+/// The library asks only where it dequantises by itself.
+constexpr int kMostBits = 30;
+
 /// Whole numbers over a range, as floats; section "Dequantize Values".
 class Dequantizer {
 public:
-    explicit Dequantizer(const draco::PointAttribute& attribute) {
-        transform_.InitFromAttribute(attribute);
-        step_ = static_cast<double>(transform_.range()) / ((1u << transform_.quantization_bits()) - 1);
+    /// False when the data say what makes no sense.
+    bool init(const draco::PointAttribute& attribute) {
+        if (!transform_.InitFromAttribute(attribute)) return false;
+        const int bits = transform_.quantization_bits();
+        if (bits < 1 || bits > kMostBits) return false;
+        step_ = static_cast<double>(transform_.range()) / ((1u << bits) - 1);
+        return true;
     }
     float value(int32_t code, int component) const {
         return static_cast<float>(static_cast<double>(transform_.min_value(component)) + code * step_);
@@ -149,8 +156,9 @@ bool read_floats(const draco::Mesh& mesh, const draco::PointAttribute& a, int co
                                sizeof(float) * static_cast<size_t>(components));
                });
     if (transform->transform_type() == draco::ATTRIBUTE_QUANTIZATION_TRANSFORM) {
-        const Dequantizer dequantizer(a);
-        return a.num_components() == components && each_value<int32_t>(mesh, a, components, [&](uint32_t i, auto& v) {
+        Dequantizer dequantizer;
+        return dequantizer.init(a) && a.num_components() == components &&
+               each_value<int32_t>(mesh, a, components, [&](uint32_t i, auto& v) {
                    for (int c = 0; c < components; ++c)
                        out[size_t(i) * static_cast<size_t>(components) + static_cast<size_t>(c)] =
                            dequantizer.value(v[static_cast<size_t>(c)], c);
@@ -158,6 +166,7 @@ bool read_floats(const draco::Mesh& mesh, const draco::PointAttribute& a, int co
     }
     draco::AttributeOctahedronTransform octahedron;
     if (!octahedron.InitFromAttribute(a) || a.num_components() != 2 || components != 3) return false;
+    if (octahedron.quantization_bits() < 2 || octahedron.quantization_bits() > kMostBits) return false;
     return each_value<int32_t>(mesh, a, 2, [&](uint32_t i, auto& v) {
         const Vec3 n = unit_vector(v[0], v[1], octahedron.quantization_bits());
         for (int c = 0; c < 3; ++c) out[size_t(i) * 3 + static_cast<size_t>(c)] = n[c];
