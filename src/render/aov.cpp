@@ -13,6 +13,9 @@ namespace {
 
 using Sums = PixelSums;
 
+/// 0 of no samples.
+float mean(double sum, double n) { return n > 0 ? static_cast<float>(sum / n) : 0; }
+
 /// Of what was averaged over its own weights; 0 where those of a filter with negative lobes happen to cancel.
 float feature(double sum, const Sums& s) {
     return s.features.weight != 0 ? static_cast<float>(sum / s.features.weight) : 0;
@@ -35,29 +38,28 @@ constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::sin
 
 /// The channels of one light part.
 void add_part(size_t part, const std::string& layer, auto& channels) {
-    const auto mean = [part](double RgbSum::*channel) {
-        return
-            [part, channel](const Sums& s, double n) { return static_cast<float>(s.light.parts[part].*channel / n); };
+    const auto of = [part](double RgbSum::*channel) {
+        return [part, channel](const Sums& s, double n) { return mean(s.light.parts[part].*channel, n); };
     };
-    channels.push_back({layer + ".R", ChannelType::by_options, mean(&RgbSum::r)});
-    channels.push_back({layer + ".G", ChannelType::by_options, mean(&RgbSum::g)});
-    channels.push_back({layer + ".B", ChannelType::by_options, mean(&RgbSum::b)});
+    channels.push_back({layer + ".R", ChannelType::by_options, of(&RgbSum::r)});
+    channels.push_back({layer + ".G", ChannelType::by_options, of(&RgbSum::g)});
+    channels.push_back({layer + ".B", ChannelType::by_options, of(&RgbSum::b)});
 }
 
 /// Two ranks to a layer: id and coverage, id and coverage. A file must keep every bit of an id.
-void add_mattes(MatteCounts Sums::*counts, const std::string& name, auto& channels) {
+void add_mattes(MatteCounts::Ranking Sums::*ranking, const std::string& name, auto& channels) {
     for (uint32_t rank = 0; rank < kMatteRanks; ++rank) {
         const std::string layer = fmt::format("{}{:02}", name, rank / 2);
         channels.push_back({layer + (rank % 2 == 0 ? ".R" : ".B"), ChannelType::single,
-                            [=](const Sums& s, double) { return std::bit_cast<float>((s.*counts).covered(rank).id); }});
+                            [=](const Sums& s, double) { return std::bit_cast<float>((s.*ranking)[rank].id); }});
         channels.push_back({layer + (rank % 2 == 0 ? ".G" : ".A"), ChannelType::single,
-                            [=](const Sums& s, double) { return (s.*counts).covered(rank).coverage; }});
+                            [=](const Sums& s, double) { return (s.*ranking)[rank].coverage; }});
     }
 }
 
 /// docs/aovs.md has them with their reasons.
 constexpr Row kRows[] = {
-    {Aov::alpha, "A", kAny, [](const Sums& s, double) { return feature(s.features.alpha, s); }},
+    {Aov::alpha, "A", kAny, [](const Sums& s, double) { return clamp_to(feature(s.features.alpha, s), 0.0f, 1.0f); }},
     {Aov::albedo, "albedo.R", kAny, [](const Sums& s, double) { return feature(s.features.albedo.r, s); }},
     {Aov::albedo, "albedo.G", kAny, [](const Sums& s, double) { return feature(s.features.albedo.g, s); }},
     {Aov::albedo, "albedo.B", kAny, [](const Sums& s, double) { return feature(s.features.albedo.b, s); }},
@@ -83,9 +85,9 @@ constexpr Row kRows[] = {
 }  // namespace
 
 PictureChannels::PictureChannels(AovSet aovs) {
-    channels_.push_back({"R", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.r / n); }});
-    channels_.push_back({"G", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.g / n); }});
-    channels_.push_back({"B", kAny, [](const Sums& s, double n) { return static_cast<float>(s.color.b / n); }});
+    channels_.push_back({"R", kAny, [](const Sums& s, double n) { return mean(s.color.r, n); }});
+    channels_.push_back({"G", kAny, [](const Sums& s, double n) { return mean(s.color.g, n); }});
+    channels_.push_back({"B", kAny, [](const Sums& s, double n) { return mean(s.color.b, n); }});
     for (const Row& row : kRows)
         if (aovs.has(row.aov)) channels_.push_back({row.name, row.type, row.value});
     for (size_t i = 0; i < kLightParts; ++i)

@@ -82,32 +82,31 @@ void MatteCounts::add(uint32_t id, int32_t samples) {
         few_[used_++] = {id, samples};
         return;
     }
-    for (Entry& e : more_)
-        if (e.id == id) {
-            e.samples += samples;
-            return;
-        }
-    more_.push_back({id, samples});
+    const auto at =
+        std::lower_bound(more_.begin(), more_.end(), id, [](const Entry& e, uint32_t i) { return e.id < i; });
+    if (at != more_.end() && at->id == id)
+        at->samples += samples;
+    else
+        more_.insert(at, {id, samples});
 }
 
-/// A selection by counting: there are few of them.
-MatteCounts::Covered MatteCounts::covered(uint32_t rank) const {
+MatteCounts::Ranking MatteCounts::ranking() const {
     int64_t total = 0;
     each([&](const Entry& e) { total += e.samples; });
-    if (total == 0) return {};
+    Ranking out;
+    if (total == 0) return out;
     const int64_t sign = total < 0 ? -1 : 1;  // of few samples most may be of negative weight
-    const auto covers = [&](const Entry& e) { return e.id != 0 && e.samples * sign > 0; };
-    const auto before = [&](const Entry& a, const Entry& b) {
-        return a.samples != b.samples ? a.samples * sign > b.samples * sign : a.id < b.id;
-    };
-    Covered out;
+    std::vector<Entry> covering;
     each([&](const Entry& e) {
-        if (!covers(e)) return;
-        uint32_t larger = 0;
-        each([&](const Entry& other) { larger += covers(other) && before(other, e); });
-        if (larger != rank) return;
-        out.id = e.id;
-        out.coverage = std::min(static_cast<float>(static_cast<double>(e.samples) / static_cast<double>(total)), 1.0f);
+        if (e.id != 0 && e.samples * sign > 0) covering.push_back(e);
+    });
+    const auto most = covering.begin() + ptrdiff_t(std::min<size_t>(covering.size(), kMatteRanks));
+    std::partial_sort(covering.begin(), most, covering.end(), [sign](const Entry& a, const Entry& b) {
+        return a.samples != b.samples ? a.samples * sign > b.samples * sign : a.id < b.id;
+    });
+    std::transform(covering.begin(), most, out.begin(), [total](const Entry& e) {
+        return Covered{e.id,
+                       std::min(static_cast<float>(static_cast<double>(e.samples) / static_cast<double>(total)), 1.0f)};
     });
     return out;
 }

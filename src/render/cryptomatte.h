@@ -3,6 +3,7 @@
 // first.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -35,13 +36,14 @@ public:
         more.each([&](const Entry& e) { add(e.id, e.samples); });
         return *this;
     }
-    /// Of all that cover anything, the largest in their order: the `rank`-th, of equal ones the one with the smaller
-    /// id; an empty entry where there are fewer. Coverage is 0 … 1.
     struct Covered {
         uint32_t id = 0;
-        float coverage = 0;
+        float coverage = 0;  ///< 0 … 1
     };
-    Covered covered(uint32_t rank) const;
+    using Ranking = std::array<Covered, kMatteRanks>;
+    /// What covers most, the largest first and of equal ones the one with the smaller id; empty entries where there are
+    /// fewer.
+    Ranking ranking() const;
 
     /// Of one pixel, where most show one thing or two.
     static constexpr uint64_t typical_bytes() { return sizeof(MatteCounts) + 2 * sizeof(Entry); }
@@ -55,7 +57,7 @@ private:
     static constexpr uint32_t kFew = 2;
     uint32_t used_ = 0;
     Entry few_[kFew];
-    std::vector<Entry> more_;
+    std::vector<Entry> more_;  ///< by id
 };
 
 /// The ids of a scene's objects, and of its materials, in their order; names that are the same are one matte.

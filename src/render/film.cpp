@@ -64,12 +64,11 @@ Image Film::develop() const {
     image.pixels.resize(size_t(image.width) * image.height * channels_.count());
     for (const Tile& tile : tiles_) {
         const std::lock_guard lock(tile.mutex);
-        if (tile.samples == 0) continue;
         const TileSums* open = tile.open.samples > 0 ? &tile.open.sums : nullptr;
         for (uint32_t i = 0; i < tile.rect.pixels(); ++i) {
             const size_t x = tile.rect.x0 - window_.x0 + i % tile.rect.width();
             const size_t y = tile.rect.y0 - window_.y0 + i / tile.rect.width();
-            channels_.develop(tile.sums.pixel(i, open), tile.samples,
+            channels_.develop(tile.samples > 0 ? tile.sums.pixel(i, open) : PixelSums{}, tile.samples,
                               &image.pixels[(y * image.width + x) * channels_.count()]);
         }
     }

@@ -4,7 +4,8 @@
 
 namespace steradian {
 
-FirstHits::FirstHits(const RenderContext& context, uint32_t paths) : c_(context) {
+FirstHits::FirstHits(const RenderContext& context, uint32_t paths)
+    : c_(context), bsdfs_(context.settings.aovs.has_any({Aov::albedo, Aov::normal})) {
     if (SumKinds(context.settings.aovs).first_hits()) states_.resize(paths);
 }
 
@@ -17,16 +18,20 @@ void FirstHits::begin(uint32_t path, Vec2 offset) noexcept {
 
 /// The albedo is that of one sample of the BSDF, by the same numbers as the path's own: without noise where it is
 /// diffuse. The scaling of radiance by refraction is taken out.
-void FirstHits::see(uint32_t path, const SampleKey& key, const SurfacePoint& point, Vec3 wo) noexcept {
+void FirstHits::see_bsdf(State& state, const SampleKey& key, const SurfacePoint& point, Vec3 wo) const noexcept {
     const Bsdf bsdf = make_bsdf(c_.scene.shading, point);
     const float choice = c_.sampler.get_1d(key, kBounceDimension);
     const Vec2 u = c_.sampler.get_2d(key, kBounceDimension + 2);
     const std::optional<BsdfSample> next = sample(bsdf, wo, choice, u);
-    State& state = states_[path];
-    state.found = true;
     if (next) state.albedo = next->weight / next->radiance_scale;
     const Vec3 n = bsdf.frame.z;
     state.normal = dot(n, wo) < 0 ? -n : n;
+}
+
+void FirstHits::see(uint32_t path, const SampleKey& key, const SurfacePoint& point, Vec3 wo) noexcept {
+    State& state = states_[path];
+    state.found = true;
+    if (bsdfs_) see_bsdf(state, key, point, wo);
     state.sample.position = point.p;
     state.sample.depth = static_cast<float>(max_of(c_.camera.depth_of(point.p), 0.0));
     state.sample.uv = point.uv;

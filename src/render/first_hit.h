@@ -30,7 +30,10 @@ private:
         Vec3 normal;
         CentreSample sample;
     };
+    void see_bsdf(State& state, const SampleKey& key, const SurfacePoint& point, Vec3 wo) const noexcept;
+
     const RenderContext& c_;
+    bool bsdfs_;  ///< whether an AOV asks for what a BSDF tells
     std::vector<State> states_;
 };
 

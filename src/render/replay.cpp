@@ -46,9 +46,11 @@ Result<SampleTrace> replay(const std::shared_ptr<const RenderScene>& scene, cons
         const std::atomic<bool> cancelled{false};
         std::atomic<uint64_t> rays{0};
         Recorder recorder;
+        RenderSettings colour_only = settings;
+        colour_only.aovs = {};
         const RenderContext context{
-            *scene,    settings, *camera,  FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
-            cancelled, rays,     &recorder};
+            *scene,    colour_only, *camera,  FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
+            cancelled, rays,        &recorder};
         Counters counters;
         TileSums sums(1, {});
         const auto integrator = make_integrator(context, 1);

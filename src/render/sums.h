@@ -108,7 +108,7 @@ struct PixelSums {
     SquareSum squares;
     CentreSample centre;
     LightSum light;
-    MatteCounts objects, materials;
+    MatteCounts::Ranking objects, materials;
 };
 
 /// Each array has an element for each pixel of the tile, row by row, or none where nobody asked.
@@ -152,8 +152,10 @@ struct TileSums {
         const TileSums& more = later ? *later : nothing;
         take(out.color, color, more.color), take(out.features, features, more.features);
         take(out.squares, squares, more.squares), take(out.centre, centres, more.centres);
-        take(out.light, light, more.light), take(out.objects, objects, more.objects);
-        take(out.materials, materials, more.materials);
+        take(out.light, light, more.light);
+        MatteCounts of_objects, of_materials;
+        take(of_objects, objects, more.objects), take(of_materials, materials, more.materials);
+        out.objects = of_objects.ranking(), out.materials = of_materials.ranking();
         return out;
     }
 };

@@ -210,6 +210,19 @@ TEST(Aovs, TheVarianceIsThatOfThePixelsMean) {
     }
 }
 
+/// With a filter that has negative lobes too.
+TEST(Aovs, AlphaIsAShare) {
+    RenderSettings settings = settings_with({Aov::alpha}, 2);
+    settings.filter = Filter{FilterKind::mitchell, 2};
+    float most = 0;
+    for (const float a : channel(run(prepared(test::everything_scene()), settings).image, "A")) {
+        EXPECT_GE(a, 0);
+        EXPECT_LE(a, 1);
+        most = std::max(most, a);
+    }
+    EXPECT_EQ(most, 1);
+}
+
 TEST(Aovs, OneSampleHasNoVariance) {
     const Image image = run(prepared(test::everything_scene()), settings_with({Aov::variance}, 1)).image;
     for (const float v : channel(image, "variance.R")) EXPECT_EQ(v, 0.0f);

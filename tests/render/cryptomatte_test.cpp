@@ -56,29 +56,46 @@ TEST(MatteCounts, RankByCoverageThenId) {
     // In all 21: 5 five times, 7 four times, 9 three times, 1 once; 2 has negative weight.
     const std::pair<uint32_t, double> expected[] = {{5, 5}, {7, 4}, {9, 3}, {1, 1}, {0, 0}, {0, 0}};
     for (uint32_t rank = 0; rank < kMatteRanks; ++rank) {
-        EXPECT_EQ(counts.covered(rank).id, expected[rank].first) << rank;
-        EXPECT_EQ(counts.covered(rank).coverage, static_cast<float>(expected[rank].second / 21)) << rank;
+        EXPECT_EQ(counts.ranking()[rank].id, expected[rank].first) << rank;
+        EXPECT_EQ(counts.ranking()[rank].coverage, static_cast<float>(expected[rank].second / 21)) << rank;
     }
     MatteCounts tie;
     for (const uint32_t id : {9u, 4u, 6u}) tie.add(id, 2);
-    EXPECT_EQ(tie.covered(0).id, 4u);
-    EXPECT_EQ(tie.covered(1).id, 6u);
-    EXPECT_EQ(tie.covered(2).id, 9u);
-    EXPECT_EQ(MatteCounts().covered(0).id, 0u);
+    EXPECT_EQ(tie.ranking()[0].id, 4u);
+    EXPECT_EQ(tie.ranking()[1].id, 6u);
+    EXPECT_EQ(tie.ranking()[2].id, 9u);
+    EXPECT_EQ(MatteCounts().ranking()[0].id, 0u);
     // The sum of two is as if all had been counted in one.
     MatteCounts twice = counts;
     twice += counts;
-    EXPECT_EQ(twice.covered(1).coverage, counts.covered(1).coverage);
+    EXPECT_EQ(twice.ranking()[1].coverage, counts.ranking()[1].coverage);
+}
+
+/// However many there are, in whatever order they come.
+TEST(MatteCounts, OfManyThings) {
+    MatteCounts counts, backwards;
+    const uint32_t things = 20'000;
+    for (uint32_t i = 0; i < things; ++i) {
+        const uint32_t id = 1 + i * 7919 % things;
+        counts.add(id, id == 17 ? 3 : id == 4 ? 2 : 1);
+    }
+    for (uint32_t id = things; id > 0; --id) backwards.add(id, id == 17 ? 3 : id == 4 ? 2 : 1);
+    const uint32_t expected[] = {17, 4, 1, 2, 3, 5};
+    for (uint32_t rank = 0; rank < kMatteRanks; ++rank) {
+        EXPECT_EQ(counts.ranking()[rank].id, expected[rank]);
+        EXPECT_EQ(backwards.ranking()[rank].id, expected[rank]);
+        EXPECT_EQ(counts.ranking()[rank].coverage, backwards.ranking()[rank].coverage);
+    }
 }
 
 TEST(MatteCounts, AreNeverMoreThanAll) {
     MatteCounts counts;  // a filter with negative lobes at an edge
     counts.add(3, 10), counts.add(4, -1);
-    EXPECT_EQ(counts.covered(0).coverage, 1.0f);
-    EXPECT_EQ(counts.covered(1).id, 0u);
+    EXPECT_EQ(counts.ranking()[0].coverage, 1.0f);
+    EXPECT_EQ(counts.ranking()[1].id, 0u);
     MatteCounts one;
     one.add(3, -1);
-    EXPECT_EQ(one.covered(0).coverage, 1.0f);
+    EXPECT_EQ(one.ranking()[0].coverage, 1.0f);
 }
 
 Scene named_scene() {

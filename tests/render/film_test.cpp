@@ -53,6 +53,15 @@ TEST(Film, TheOrderInWhichBlocksArriveDoesNotMatter) {
     }
 }
 
+/// A picture that was stopped early is black where nothing is known, not nearest to the camera.
+TEST(Film, ATileWithoutSamplesShowsNothing) {
+    Film film({0, 0, 2, 1}, 1, AovSet{Aov::depth, Aov::samples});
+    film.commit(0, 0, 64, TileSums(1, SumKinds(AovSet{Aov::depth, Aov::samples})));
+    const Image image = film.develop();
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "Z", "samples.count"}));
+    EXPECT_EQ(image.pixels, (std::vector<float>{0, 0, 0, 1e10f, 64, 0, 0, 0, 1e10f, 0}));
+}
+
 TEST(Film, ABlockThatIsFinishedEarlyIsHeldBack) {
     Film film({0, 0, 2, 1}, 16);
     film.commit(0, 1, 64, sums_of(2, 640));
