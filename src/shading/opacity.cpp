@@ -9,7 +9,10 @@ namespace steradian {
 float opacity_at(const ShadingScene& scene, const SurfacePoint& point, MaterialId material) noexcept {
     if (!scene.materials[index(material)].cut_out) return 1;
     const auto& m = std::get<OpenPbrMaterial>(scene.scene.materials[index(material)]);
-    const float opacity = eval_input(scene, m.geometry_opacity, point);
+    // Rays that pass do not know how wide they are, so nobody looks at more than a point: all must agree.
+    SurfacePoint exact = point;
+    exact.footprint = 0;
+    const float opacity = eval_input(scene, m.geometry_opacity, exact);
     if (m.geometry_opacity_cutoff > 0) return opacity >= m.geometry_opacity_cutoff ? 1.0f : 0.0f;
     return opacity;
 }

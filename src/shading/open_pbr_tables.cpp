@@ -111,23 +111,46 @@ std::shared_ptr<const FuzzTable> SharedTables::fuzz(float roughness) {
     return known;
 }
 
+FilmTables SharedTables::film(const Film& of) {
+    const FilmKey key{{of.above, of.film, of.thickness, of.weight, of.below, of.eta, of.eta_outside},
+                      {of.metal, of.glass, of.opaque},
+                      {of.tint[0], of.tint[1], of.tint[2]},
+                      of.base.value.x,
+                      of.base.value.y,
+                      of.base.squared,
+                      of.base.texture.has_value()};
+    const auto known = films_.find(key);
+    if (known != films_.end()) return known->second;
+    FilmTables out;
+    if (of.metal)
+        out.metal = std::make_shared<const FilmOnMetal>(of.above, of.film, of.thickness,
+                                                        Rgb{of.tint[0], of.tint[1], of.tint[2]});
+    if (of.glass)
+        out.glass = std::make_shared<const FilmOnDielectric>(FilmIndices{1, of.film, of.eta}, of.thickness, of.weight,
+                                                             of.eta, false);
+    if (of.opaque) {
+        const FilmIndices n{of.above, of.film, of.below * of.above};
+        const auto table = std::make_shared<const FilmOnDielectric>(n, of.thickness, of.weight, of.eta_outside, true);
+        out.dielectric = table;
+        for (int c = 0; c < 3; ++c)
+            out.energy[size_t(c)] = MicrofacetEnergy::coating(
+                of.base, [&](double mu) { return static_cast<double>(table->reflectance(mu)[c]); });
+    }
+    return films_[key] = out;
+}
+
 namespace {
 
-void add_film(const OpenPbrMaterial& m, const Roughness& base, double index_below, OpenPbrTables& out) {
-    const double thickness = m.thin_film_thickness, weight = m.thin_film_weight, film = m.thin_film_ior;
-    const double above = 1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight;
-    if (m.base_metalness.value > 0)
-        out.metal_film = std::make_shared<const FilmOnMetal>(above, film, thickness, m.specular_color);
-    if (m.transmission_weight.value > 0)
-        out.glass_film =
-            std::make_shared<const FilmOnDielectric>(FilmIndices{1, film, out.eta}, thickness, weight, out.eta, false);
-    if (m.transmission_weight.value == 1 && !m.transmission_weight.texture) return;
-    const FilmIndices n{above, film, index_below * above};
-    const auto table = std::make_shared<const FilmOnDielectric>(n, thickness, weight, out.eta_outside, true);
-    out.dielectric_film = table;
-    for (int c = 0; c < 3; ++c)
-        out.film_energy[size_t(c)] =
-            MicrofacetEnergy::coating(base, [&](double mu) { return static_cast<double>(table->reflectance(mu)[c]); });
+SharedTables::Film film_of(const OpenPbrMaterial& m, const Roughness& base, double below, const OpenPbrTables& tables) {
+    SharedTables::Film out;
+    out.above = 1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight;
+    out.film = m.thin_film_ior, out.thickness = m.thin_film_thickness, out.weight = m.thin_film_weight;
+    out.below = below, out.eta = tables.eta, out.eta_outside = tables.eta_outside;
+    out.metal = m.base_metalness.value > 0, out.glass = m.transmission_weight.value > 0;
+    out.opaque = m.transmission_weight.value != 1 || m.transmission_weight.texture.has_value();
+    if (out.metal) out.tint[0] = m.specular_color.r, out.tint[1] = m.specular_color.g, out.tint[2] = m.specular_color.b;
+    out.base = base;
+    return out;
 }
 
 }  // namespace
@@ -148,7 +171,7 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     out.metal = shared.reflecting(base);
     out.dielectric = shared.coating(base, out.eta_outside);
     if (m.transmission_weight.value > 0 && !m.geometry_thin_walled) out.glass = shared.transmitting(base, out.eta);
-    if (m.thin_film_weight > 0) add_film(m, base, weighted, out);
+    if (m.thin_film_weight > 0) out.film = shared.film(film_of(m, base, weighted, out));
     if (m.coat_weight > 0) {
         const Vec2 alpha = open_pbr_alpha(m.coat_roughness, m.coat_roughness_anisotropy);
         out.coat = shared.coating(table_roughness(alpha, false), out.coat_eta);

@@ -29,6 +29,15 @@ private:
     std::array<double, 64> albedo_{};
 };
 
+/// Of a base under a thin film.
+struct FilmTables {
+    /// Over the opaque base (below the coat) with what is lost of each channel, over glass, and over metal; null where
+    /// the base has no such part.
+    std::shared_ptr<const FilmOnDielectric> dielectric, glass;
+    std::array<std::shared_ptr<const MicrofacetEnergy>, 3> energy;
+    std::shared_ptr<const FilmOnMetal> metal;
+};
+
 struct OpenPbrTables {
     bool textured = false;                     ///< the tables of the base are over its roughness as well
     float eta = 1.5f;                          ///< of the base as a body: inside over outside
@@ -37,11 +46,7 @@ struct OpenPbrTables {
     std::shared_ptr<const MicrofacetEnergy> metal, dielectric, glass;  ///< of the base; glass: where it transmits
     std::shared_ptr<const MicrofacetEnergy> coat;                      ///< null without a coat
     std::shared_ptr<const FuzzTable> fuzz;                             ///< null without fuzz
-    /// Of a thin film, null without one: over the opaque base (below the coat) with what is lost of each channel, over
-    /// metal, and over glass.
-    std::shared_ptr<const FilmOnDielectric> dielectric_film, glass_film;
-    std::array<std::shared_ptr<const MicrofacetEnergy>, 3> film_energy;
-    std::shared_ptr<const FilmOnMetal> metal_film;
+    FilmTables film;                                                   ///< of nothing without a film
 };
 
 /// α along u and across: section "Microfacet model" of the specification.
@@ -61,6 +66,16 @@ public:
     }
     std::shared_ptr<const FuzzTable> fuzz(float roughness);
 
+    /// What the tables of a film are made of.
+    struct Film {
+        double above = 1, film = 1, thickness = 0, weight = 0;  ///< indices; micrometres
+        double below = 1, eta = 1, eta_outside = 1;             ///< the base under the film, and without one
+        bool metal = false, glass = false, opaque = false;      ///< the parts that there are
+        float tint[3] = {};                                     ///< of the metal towards grazing angles
+        Roughness base;
+    };
+    FilmTables film(const Film& of);
+
 private:
     enum class Kind : uint8_t { reflecting, coating, transmitting };
     std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const Roughness& r, double eta);
@@ -68,6 +83,9 @@ private:
     using Key = std::tuple<Kind, float, float, bool, bool, double>;
     std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
     std::map<float, std::shared_ptr<const FuzzTable>> fuzz_;
+    using FilmKey =
+        std::tuple<std::array<double, 7>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool>;
+    std::map<FilmKey, FilmTables> films_;
 };
 
 OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& shared);

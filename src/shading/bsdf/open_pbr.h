@@ -69,10 +69,10 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     const float level = tables.textured ? roughness : 1;
     const Microfacets facets = open_pbr_facets(roughness, m.specular_roughness_anisotropy, level);
     out.metalness = number(m.base_metalness);
-    out.metal = open_pbr_metal(m, base, facets, tables.metal.get(), tables.metal_film.get());
+    out.metal = open_pbr_metal(m, base, facets, tables.metal.get(), tables.film.metal.get());
     out.transmission = number(m.transmission_weight);
     out.glass = {tables.eta, m.specular_color,   color(m.transmission_color),
-                 facets,     tables.glass.get(), tables.glass_film.get()};
+                 facets,     tables.glass.get(), tables.film.glass.get()};
     out.specular_color = m.specular_color;
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
@@ -134,7 +134,7 @@ struct OpenPbrShares {
         glass = left * lobe.transmission;
         dielectric = left - glass;
         double below = t.dielectric->loss(lobe.metal.facets, wo);
-        if (t.dielectric_film) below = pass_film(t, lobe.metal.facets, wo);
+        if (t.film.dielectric) below = pass_film(t, lobe.metal.facets, wo);
         diffuse = dielectric * below;
         p_metal = metal * max_component(lobe.metal.mean_fresnel * lobe.metal.tint);
         p_glass = glass;
@@ -150,8 +150,8 @@ struct OpenPbrShares {
 private:
     /// The mean over the channels of what passes.
     double pass_film(const OpenPbrTables& t, const Microfacets& facets, Vec3d wo) {
-        const double r = t.film_energy[0]->loss(facets, wo), g = t.film_energy[1]->loss(facets, wo),
-                     b = t.film_energy[2]->loss(facets, wo), mean = (r + g + b) / 3;
+        const double r = t.film.energy[0]->loss(facets, wo), g = t.film.energy[1]->loss(facets, wo),
+                     b = t.film.energy[2]->loss(facets, wo), mean = (r + g + b) / 3;
         if (mean > 0)
             diffuse_tint = {static_cast<float>(r / mean), static_cast<float>(g / mean), static_cast<float>(b / mean)};
         return mean;
@@ -221,7 +221,7 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
         if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, nullptr, wo, wi), s.coat, s.p_coat, {1, 1, 1});
         if (s.p_metal > 0) add(eval_local(lobe.metal, wo, wi, outside), s.metal, s.p_metal, below);
         if (s.p_dielectric > 0)
-            add(eval_dielectric(lobe.metal.facets, t.eta_outside, t.dielectric_film.get(), wo, wi), s.dielectric,
+            add(eval_dielectric(lobe.metal.facets, t.eta_outside, t.film.dielectric.get(), wo, wi), s.dielectric,
                 s.p_dielectric, lobe.specular_color * below);
         if (s.p_diffuse > 0)
             out.diffuse =
