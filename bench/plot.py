@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws what `accel_bench --study FILE.csv` wrote, as SVG: rays per second and build times over the number of triangles.
 
-    bench/plot.py STUDY.csv [FOLDER]        writes FOLDER/study-rays.svg and FOLDER/study-build.svg (docs/images)
+    bench/plot.py STUDY.csv [FOLDER]        writes study-rays.svg, study-build.svg and study-build-all.svg (docs/images)
 
 Needs nothing but Python's standard library. render.py draws with it too.
 """
@@ -14,7 +14,8 @@ from collections import defaultdict
 WIDTH, HEIGHT = 760, 440
 LEFT, RIGHT, TOP, BOTTOM = 70, 190, 44, 54
 COLOURS = ["#1b6ca8", "#d1495b", "#2e8b57", "#e08e0b", "#6a4c93"]
-BUILDS = {"build": "one thread", "build all": "all threads"}
+BUILDS = {"build": ("study-build.svg", "one thread"), "build all": ("study-build-all.svg", "all threads")}
+EMBREE_PEERS = {"Embree medium": "Steradian sah", "Embree high": "Steradian high-quality"}  # one colour
 
 
 def read(path):
@@ -120,10 +121,15 @@ def ray_lines(table):
             for i, measure in enumerate(measures) for series, points in table[measure].items()]
 
 
-def build_lines(table):
-    names = list(dict.fromkeys(series for measure in BUILDS for series in table.get(measure, {})))
-    return [(f"{series}, {BUILDS[measure]}", COLOURS[names.index(series) % len(COLOURS)], measure != "build", points)
-            for measure in BUILDS for series, points in table.get(measure, {}).items()]
+def build_lines(builds):
+    """Nanoseconds a triangle: what grows like n log n is a line that rises slowly."""
+    ours = [series for series in builds if series not in EMBREE_PEERS]
+    lines = []
+    for series, points in builds.items():
+        colour = COLOURS[ours.index(EMBREE_PEERS.get(series, series)) % len(COLOURS)]
+        each = [(n, *(1e6 * milliseconds / n for milliseconds in values)) for n, *values in points]
+        lines.append((series, colour, series in EMBREE_PEERS, each))
+    return lines
 
 
 def main(arguments):
@@ -136,8 +142,10 @@ def main(arguments):
         print(f"{arguments[0]}: no figures in it", file=sys.stderr)
         return 3
     folder.mkdir(parents=True, exist_ok=True)
-    draw(folder / "study-rays.svg", "Rays, one thread", "triangles", "millions of rays per second", ray_lines(table), False)
-    draw(folder / "study-build.svg", "Build", "triangles", "milliseconds", build_lines(table), True)
+    draw(folder / "study-rays.svg", "Rays, one thread", "triangles", "millions of rays per second", ray_lines(table), True)
+    for measure, (name, threads) in BUILDS.items():
+        if measure in table:
+            draw(folder / name, f"Build, {threads}", "triangles", "nanoseconds a triangle", build_lines(table[measure]), True)
     return 0
 
 
