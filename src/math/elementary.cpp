@@ -286,6 +286,15 @@ double cos(double x) {
     return (q.index + 1) & 2 ? -y : y;
 }
 
+SinCos sin_cos(double x) {
+    const double size = std::fabs(x);
+    if (!(size <= 0x1p52)) return {kNan, kNan};
+    const Quadrant q = reduce(x);
+    const double s = value(sin_quadrant(q.r)), c = value(cos_quadrant(q.r));
+    const double sine = q.index & 1 ? c : s, cosine = q.index & 1 ? s : c;
+    return {size < 0x1p-27 ? x : q.index & 2 ? -sine : sine, (q.index + 1) & 2 ? -cosine : cosine};
+}
+
 double tan(double x) {
     const double size = std::fabs(x);
     if (!(size <= 0x1p52)) return kNan;

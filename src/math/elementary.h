@@ -8,9 +8,13 @@
 namespace steradian::math {
 
 // double in, double out. Below 1 ulp unless said otherwise. Special values as in C's Annex F.
-double sin(double x);  ///< NaN for |x| > 2^52, in all three
+double sin(double x);  ///< NaN for |x| > 2^52, in all four
 double cos(double x);
-double tan(double x);  ///< below 2 ulp
+struct SinCos {
+    double sin, cos;
+};
+SinCos sin_cos(double x);  ///< the bits of sin(x) and cos(x), for less than both
+double tan(double x);      ///< below 2 ulp
 double exp(double x);
 double log(double x);  ///< x < 0: NaN; 0: -infinity
 double log2(double x);

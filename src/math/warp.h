@@ -22,7 +22,8 @@ inline DiskPoint disk(Vec2 u) {
     const bool wide = std::fabs(a) > std::fabs(b);
     const double r = wide ? a : b;
     const double angle = wide ? std::numbers::pi / 4 * (b / a) : std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
-    return {r * math::cos(angle), r * math::sin(angle), std::fabs(r)};
+    const math::SinCos at = math::sin_cos(angle);
+    return {r * at.cos, r * at.sin, std::fabs(r)};
 }
 /// Uniform on the regular polygon with its corners on the unit circle, the first one at (1, 0): the disk, with its
 /// circles pushed to polygons. The angle becomes a place on the outline, so areas keep their ratio and all is

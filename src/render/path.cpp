@@ -48,35 +48,38 @@ private:
     void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
         if (depth == 0) states_[id] = {};
         if (!hit.found()) {
+            const SurfacePoint* from = states_[id].bsdf_pdf > 0 ? &states_[id].from : nullptr;
             for (uint32_t i = 0; i < distant_sources(shading_); ++i) {
-                const DistantRadiance sky = distant_radiance(shading_, i, ray.d, depth == 0);
-                add_emission(id, sky.radiance, sky.light, ray.d, nullptr, depth);
+                const DistantRadiance sky = distant_radiance(shading_, i, ray.d, depth == 0, from);
+                add_emission(id, sky.radiance, sky.light, depth, true, [&] { return sky.pdf; });
             }
             return;
         }
         const SurfacePoint point = arrive(id, ray, hit);
         const Vec3 wo = -ray.d;
         const uint32_t light = shading_.instances[point.instance].area_light;
-        add_emission(id, emitted_radiance(shading_, point, wo), light, ray.d, &point, depth);
+        add_emission(id, emitted_radiance(shading_, point, wo), light, depth, false,
+                     [&] { return pdf_light(shading_, light, states_[id].from, ray.d, &point); });
         if (depth >= c_.settings.max_depth) return;
         const Vertex vertex = vertex_at(point, wo);
         if (!is_specular(vertex.bsdf)) sample_lights(id, vertex, depth);
         scatter(id, point, vertex, depth);
     }
 
-    /// Emission that the ray from the last vertex has found, weighted against the light samples taken there.
-    void add_emission(uint32_t id, Rgb radiance, uint32_t light, Vec3 wi, const SurfacePoint* at,
-                      uint32_t depth) noexcept {
+    /// Emission that the ray from the last vertex has found, weighted against the light samples taken there, which find
+    /// its direction with density pdf().
+    template <class Pdf>
+    void add_emission(uint32_t id, Rgb radiance, uint32_t light, uint32_t depth, bool background, Pdf pdf) noexcept {
         if (is_black(radiance)) return;
         const State& state = states_[id];
         float weight = 1;
         double density = 0;
         if (state.bsdf_pdf > 0) {
-            density = expected_samples(state, light) * pdf_light(shading_, light, state.from, wi, at);
+            density = expected_samples(state, light) * pdf();
             weight = emission_weight(state.bsdf_pdf, density);
         }
         const Rgb contribution = clamped(path(id).throughput * radiance * weight, limit_of(state, depth));
-        gain(id, contribution, at == nullptr);
+        gain(id, contribution, background);
         if (c_.recorder)
             c_.recorder->emission(radiance, state.bsdf_pdf, static_cast<float>(density), weight, contribution);
     }

@@ -128,8 +128,8 @@ Vec3d CameraSampler::lens_offset(Vec2 u) const noexcept {
 Vec3d CameraSampler::panorama_direction(Vec2 film) const noexcept {
     const double theta = std::numbers::pi * (film.y / height_);
     const double phi = 2 * std::numbers::pi * (film.x / width_ - 0.5);
-    const double s = math::sin(theta);
-    return up_ * math::cos(theta) + right_ * (s * math::sin(phi)) + forward_ * (s * math::cos(phi));
+    const math::SinCos t = math::sin_cos(theta), p = math::sin_cos(phi);
+    return up_ * t.cos + right_ * (t.sin * p.sin) + forward_ * (t.sin * p.cos);
 }
 
 Vec3d CameraSampler::fisheye_direction(Vec2 film) const noexcept {

@@ -22,10 +22,16 @@ Rgb light_texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y)
 /// The mean over a texel of the interpolation between its own value and its neighbours'.
 double tent_mean(double before, double own, double after) { return 0.125 * before + 0.75 * own + 0.125 * after; }
 
-/// The index of the first cumulative value above x; values end with the total, x is below it.
+/// The index of the first cumulative value above x, or the last. By halves without a branch, which would be guessed
+/// wrong every other time.
 size_t find_interval(const double* begin, size_t count, double x) {
-    const double* at = std::upper_bound(begin, begin + count, x);
-    return min_of(static_cast<size_t>(at - begin), count - 1);
+    const double* at = begin;
+    for (size_t left = count; left > 1;) {
+        const size_t half = left / 2;
+        at += at[half - 1] <= x ? half : 0;
+        left -= half;
+    }
+    return static_cast<size_t>(at - begin);
 }
 
 /// 24 uniform bits, refined by 16 more.
@@ -98,7 +104,7 @@ void EnvironmentTable::tabulate(const RawImage& image) {
     if (!(total > 1e-300) || !std::isfinite(total)) empty_ = true;
 }
 
-EnvironmentTable::MapPoint EnvironmentTable::map_point(Vec3 d) const noexcept {
+MapPoint EnvironmentTable::map_point(Vec3 d) const noexcept {
     // The map is turned by the rotation; the direction is turned back.
     const double x = cos_rotation_ * d.x - sin_rotation_ * d.z;
     const double z = sin_rotation_ * d.x + cos_rotation_ * d.z;
@@ -108,10 +114,8 @@ EnvironmentTable::MapPoint EnvironmentTable::map_point(Vec3 d) const noexcept {
     return {clamp_to(s, 0.0, 1.0), clamp_to(t, 0.0, 1.0)};  // NaN becomes 0
 }
 
-Rgb EnvironmentTable::radiance(const Scene& scene, Vec3 d) const noexcept {
-    if (!image_) return scale_;
+Rgb EnvironmentTable::radiance_at(const Scene& scene, MapPoint at) const noexcept {
     const RawImage& image = scene.images[index(*image_)];
-    const MapPoint at = map_point(d);
     const double fx = at.s * image.width - 0.5, fy = at.t * image.height - 0.5;
     const double x_floor = std::floor(fx), y_floor = std::floor(fy);
     const auto w = static_cast<int64_t>(image.width), h = static_cast<int64_t>(image.height);
@@ -145,9 +149,9 @@ EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u) const noexce
     // What is left of both numbers is uniform within the cell: in the angle about +Y and in the height.
     const double fx = clamp_to(in_cell / mass, 0.0, 1.0), fy = clamp_to(in_row / row_mass(y), 0.0, 1.0);
     const double height = cos_theta_[y] + (cos_theta_[y + 1] - cos_theta_[y]) * fy;
-    const double phi = kTwoPi * ((x + fx) / width_ - 0.5);
+    const math::SinCos phi = math::sin_cos(kTwoPi * ((x + fx) / width_ - 0.5));
     const double radius = std::sqrt(max_of((1 - height) * (1 + height), 0.0));
-    const double mx = radius * math::sin(phi), mz = -radius * math::cos(phi);
+    const double mx = radius * phi.sin, mz = -radius * phi.cos;
     EnvironmentSample out;
     out.direction = normalize(static_cast<Vec3>(
         Vec3d(cos_rotation_ * mx + sin_rotation_ * mz, height, cos_rotation_ * mz - sin_rotation_ * mx)));
@@ -160,8 +164,7 @@ double EnvironmentTable::cell_pdf(uint32_t x, uint32_t y) const noexcept {
     return cell_mass(x, y) / (rows_.back() * band) * (width_ / kTwoPi);
 }
 
-double EnvironmentTable::pdf(Vec3 d) const noexcept {
-    const MapPoint at = map_point(d);
+double EnvironmentTable::pdf_at(MapPoint at) const noexcept {
     const double x = clamp_to(std::floor(at.s * width_), 0.0, width_ - 1.0);
     const double y = clamp_to(std::floor(at.t * height_), 0.0, height_ - 1.0);
     return cell_pdf(static_cast<uint32_t>(x), static_cast<uint32_t>(y));

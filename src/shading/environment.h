@@ -16,6 +16,12 @@ struct EnvironmentSample {
     double pdf = 0;  ///< per solid angle
 };
 
+/// Where a direction lies in the image, from its top left corner, both in [0, 1]; (0, 0) for directions that are not
+/// numbers.
+struct MapPoint {
+    double s = 0, t = 0;
+};
+
 /// A latitude-longitude image is interpolated bilinearly between texel centres, wraps around at the sides and is
 /// continued at the poles. Directions are drawn by texel, with the probability of the texel's mean luminance times its
 /// solid angle, and uniformly within one: so wherever there is radiance there is density.
@@ -32,18 +38,22 @@ public:
     bool empty() const noexcept { return empty_; }
 
     /// Along a ray of direction d (unit).
-    Rgb radiance(const Scene& scene, Vec3 d) const noexcept;
+    Rgb radiance(const Scene& scene, Vec3 d) const noexcept {
+        return image_ ? radiance_at(scene, map_point(d)) : scale_;
+    }
 
-    /// For images that are not empty() only. `choice` refines u below its 24 bits.
+    // For images that are not empty() only.
+
+    /// `choice` refines u below its 24 bits.
     EnvironmentSample sample(uint32_t choice, Vec2 u) const noexcept;
-    double pdf(Vec3 d) const noexcept;
+    double pdf(Vec3 d) const noexcept { return pdf_at(map_point(d)); }
+
+    // The same for those who ask for both of one direction.
+    MapPoint map_point(Vec3 d) const noexcept;
+    Rgb radiance_at(const Scene& scene, MapPoint at) const noexcept;
+    double pdf_at(MapPoint at) const noexcept;
 
 private:
-    /// Position in the image from its top left corner, both in [0, 1]; (0, 0) for directions that are not numbers.
-    struct MapPoint {
-        double s = 0, t = 0;
-    };
-    MapPoint map_point(Vec3 d) const noexcept;
     void tabulate(const RawImage& image);
     double row_mass(uint32_t y) const noexcept { return rows_[y] - (y > 0 ? rows_[y - 1] : 0.0); }
     double cell_mass(uint32_t x, uint32_t y) const noexcept;

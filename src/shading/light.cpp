@@ -39,22 +39,28 @@ Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 
     return side > 0 || (side < 0 && area.two_sided) ? area.radiance : Rgb{};
 }
 
-Rgb environment_radiance(const ShadingScene& scene, Vec3 d) noexcept {
-    return scene.environment ? scene.environment->radiance(scene.scene, d) : Rgb{};
-}
-
 uint32_t distant_sources(const ShadingScene& scene) noexcept { return static_cast<uint32_t>(1 + scene.suns.size()); }
 
-DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera) noexcept {
+DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera,
+                                 const SurfacePoint* from) noexcept {
     const auto sees = [&](const auto& light) { return !from_camera || light.visible_to_camera; };
-    if (source == kEnvironmentSource) {
-        const uint32_t light = scene.environment_light;
-        const bool seen = light != kNoLight && sees(std::get<EnvironmentLight>(scene.scene.lights[light]));
-        return {light, seen ? environment_radiance(scene, d) : Rgb{}};
+    DistantRadiance out;
+    out.light = source == kEnvironmentSource ? scene.environment_light : scene.suns[source - 1];
+    if (out.light == kNoLight) return out;
+    if (const auto* sun = std::get_if<DirectionalLight>(&scene.scene.lights[out.light])) {
+        if (sees(*sun)) out.radiance = disc_radiance(scene.lights[out.light], d);
+    } else if (sees(std::get<EnvironmentLight>(scene.scene.lights[out.light]))) {
+        const EnvironmentTable& table = *scene.environment;
+        if (!table.is_constant()) {
+            const MapPoint at = table.map_point(d);
+            out.radiance = table.radiance_at(scene.scene, at);
+            if (from && !table.empty()) out.pdf = static_cast<float>(table.pdf_at(at));
+            return out;
+        }
+        out.radiance = table.radiance(scene.scene, d);
     }
-    const uint32_t light = scene.suns[source - 1];
-    const bool seen = sees(std::get<DirectionalLight>(scene.scene.lights[light]));
-    return {light, seen ? disc_radiance(scene.lights[light], d) : Rgb{}};
+    if (from && !is_black(out.radiance)) out.pdf = pdf_light(scene, out.light, *from, d, nullptr);
+    return out;
 }
 
 Rgb sky_radiance(const ShadingScene& scene, Vec3 d, bool from_camera) noexcept {

@@ -38,19 +38,19 @@ float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& f
 /// Radiance that an area light on this surface sends towards wo; black where there is none.
 Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept;
 
-/// Radiance that arrives from infinity along a ray of direction d (unit); black without an environment.
-Rgb environment_radiance(const ShadingScene& scene, Vec3 d) noexcept;
-
 /// Radiance that arrives from infinity along a ray of direction d (unit), from the environment (0) and from each of
 /// scene.suns (1, 2, …): what `distant` of them sends. Black where there is none. A ray from the camera does not see
 /// the hidden ones.
 struct DistantRadiance {
     uint32_t light = 0;  ///< index into scene.lights, kNoLight where there is none
     Rgb radiance;
+    float pdf = 0;  ///< pdf_light() of d, where it was asked for and there is radiance
 };
 inline constexpr uint32_t kEnvironmentSource = 0;
 uint32_t distant_sources(const ShadingScene& scene) noexcept;
-DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera) noexcept;
+/// `from`: the point that lights were sampled from, if the density is wanted.
+DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera,
+                                 const SurfacePoint* from = nullptr) noexcept;
 /// Of all of them together.
 Rgb sky_radiance(const ShadingScene& scene, Vec3 d, bool from_camera) noexcept;
 

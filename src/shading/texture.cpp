@@ -264,6 +264,11 @@ Vec2 slope_at(const ShadingScene& scene, TextureId id, const ImageTexture& t, co
 
 Rgb texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) noexcept {
     const size_t i = (static_cast<size_t>(y) * image.width + x) * image.channels;
+    if (image.format == TexelFormat::f32 && space == ColorSpace::linear && image.channels >= 3) {  // most skies
+        float c[3];
+        std::memcpy(c, image.data.data() + i * sizeof(float), sizeof c);
+        return {finite_or_zero(c[0]), finite_or_zero(c[1]), finite_or_zero(c[2])};
+    }
     const float first = linear_value(image, space, i);
     if (image.channels < 3) return {first, first, first};
     return {first, linear_value(image, space, i + 1), linear_value(image, space, i + 2)};

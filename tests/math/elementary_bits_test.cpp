@@ -2,6 +2,8 @@
 // of optimisation and on every machine; a change here changes pictures.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
 #include <functional>
 
 #include "base/hash.h"
@@ -42,6 +44,17 @@ constexpr Case kCases[] = {
 
 TEST(ElementaryBits, AreWhatTheyWere) {
     for (const Case& c : kCases) EXPECT_EQ(hash_of(c.a, c.b, c.f), c.hash) << c.name;
+}
+
+TEST(ElementaryBits, SineAndCosineTogetherAreThoseApart) {
+    for (const double scale : {1e-300, 1e-8, 1e-4, 0.1, 1.0, 1e3, 1e6, 1e12})
+        for (int i = -2000; i <= 2000; ++i) {
+            const double x = scale * i / 97;
+            const math::SinCos both = math::sin_cos(x);
+            ASSERT_EQ(std::bit_cast<uint64_t>(both.sin), std::bit_cast<uint64_t>(math::sin(x))) << x;
+            ASSERT_EQ(std::bit_cast<uint64_t>(both.cos), std::bit_cast<uint64_t>(math::cos(x))) << x;
+        }
+    EXPECT_TRUE(std::isnan(math::sin_cos(0x1p53).sin) && std::isnan(math::sin_cos(0x1p53).cos));
 }
 
 }  // namespace

@@ -15,6 +15,10 @@
 namespace steradian {
 namespace {
 
+Rgb environment_radiance(const ShadingScene& scene, Vec3 d) {
+    return distant_radiance(scene, kEnvironmentSource, d, false).radiance;
+}
+
 using test::Random;
 
 struct Sky {

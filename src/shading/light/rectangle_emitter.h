@@ -40,7 +40,8 @@ struct SphericalRectangle {
         const double b0 = -y0 / std::sqrt(y0 * y0 + z0 * z0), b1 = y1 / std::sqrt(y1 * y1 + z0 * z0);
         const double k = std::numbers::pi + f01 - f00;
         const double angle = warp::cell_middle(u.x) * solid_angle + k;
-        const double fu = (math::cos(angle) * b0 - b1) / math::sin(angle);
+        const math::SinCos at = math::sin_cos(angle);
+        const double fu = (at.cos * b0 - b1) / at.sin;
         const double cu = clamp_to(std::copysign(1 / std::sqrt(fu * fu + b0 * b0), fu), -1.0, 1.0);
         const double xu = clamp_to(-(cu * z0) / std::sqrt(max_of((1 - cu) * (1 + cu), 1e-300)), x0, x1);
         // And (10) for the other coordinate.
