@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "render/film.h"
 #include "render/integrator.h"
+#include "shading/environment.h"
 #include "shading/mip_map.h"
 #include "shading/shading_scene.h"
 
@@ -81,7 +82,7 @@ uint64_t table_bytes(const Scene& scene, const Light& light) {
     if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky && sky->image) {
         if (index(*sky->image) >= scene.images.size()) return 0;
         const RawImage& image = scene.images[index(*sky->image)];
-        return uint64_t(image.width) * image.height * sizeof(double);
+        return uint64_t(image.width) * image.height * EnvironmentTable::kBytesPerTexel;
     }
     return 0;
 }

@@ -25,6 +25,8 @@ public:
           choice_(c_.settings.light_choice),
           limit_(c_.settings.clamp > 0 ? c_.settings.clamp : kInfinity) {
         states_.resize(capacity(max_tile_pixels));
+        // What light samples leave out then, the BSDF's find.
+        if (c_.settings.light_sampling == LightSampling::mis) density_ = EnvironmentDensity::compensated;
     }
 
     static uint64_t bytes(uint32_t max_tile_pixels) noexcept {
@@ -50,7 +52,7 @@ private:
         if (!hit.found()) {
             const SurfacePoint* from = states_[id].bsdf_pdf > 0 ? &states_[id].from : nullptr;
             for (uint32_t i = 0; i < distant_sources(shading_); ++i) {
-                const DistantRadiance sky = distant_radiance(shading_, i, ray.d, depth == 0, from);
+                const DistantRadiance sky = distant_radiance(shading_, i, ray.d, depth == 0, from, density_);
                 add_emission(id, sky.radiance, sky.light, depth, true, [&] { return sky.pdf; });
             }
             return;

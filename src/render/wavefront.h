@@ -128,6 +128,8 @@ protected:
 
     const RenderContext& c_;
     const ShadingScene& shading_;
+    /// Which the environment is sampled with.
+    EnvironmentDensity density_ = EnvironmentDensity::complete;
 
 private:
     /// A shadow ray's owner and what it brings when nothing is in the way.
@@ -169,7 +171,7 @@ private:
 template <class Weight>
 void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t light, uint32_t choice, Vec2 u,
                                          Rgb scale, float limit, Weight weight) noexcept {
-    const std::optional<LightSample> towards = sample_light(shading_, light, at.from, choice, u);
+    const std::optional<LightSample> towards = sample_light(shading_, light, at.from, choice, u, density_);
     if (!towards) return;
     const float density = towards->pdf > 0 ? towards->pdf : 1.0f;
     const BsdfEval scattered = eval(at.bsdf, at.wo, towards->wi);

@@ -12,6 +12,8 @@ namespace steradian {
 namespace {
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
+/// Of the light, above the mean: a sky that has less is even, and compensation would only make it coarse.
+constexpr double kLeastCompensated = 1e-3;
 
 /// Texels as light: nothing below zero (texel() has already made 0 of what is not finite).
 Rgb light_texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) {
@@ -67,8 +69,7 @@ void EnvironmentTable::tabulate(const RawImage& image) {
         cos_theta_[y] = math::cos(std::numbers::pi * static_cast<double>(y) / static_cast<double>(h));
     cos_theta_[0] = 1;
     cos_theta_[h] = -1;
-    cells_.resize(w * h);
-    rows_.resize(h);
+    complete_.cells.resize(w * h);
     parallel_for(h, 16, [&](size_t begin, size_t end) {
         // Luminance of the row above, the row itself and the row below, averaged along the row.
         std::array<std::vector<double>, 3> window;
@@ -89,19 +90,41 @@ void EnvironmentTable::tabulate(const RawImage& image) {
             double sum = 0;
             for (size_t x = 0; x < w; ++x) {
                 sum += tent_mean(window[0][x], window[1][x], window[2][x]) * band;
-                cells_[y * w + x] = sum;
+                complete_.cells[y * w + x] = sum;
             }
             std::swap(window[0], window[1]);
             std::swap(window[1], window[2]);
         }
     });
-    double total = 0;
-    for (size_t y = 0; y < h; ++y) {
-        total += cells_[y * w + w - 1];
-        rows_[y] = total;
-    }
+    const double total = complete_.finish(w);
     // A total that is not finite or is vanishing cannot be divided by.
     if (!(total > 1e-300) || !std::isfinite(total)) empty_ = true;
+    if (!empty_) compensate();
+}
+
+/// To what lies above the mean over the sphere.
+void EnvironmentTable::compensate() {
+    const size_t w = width_, h = height_;
+    const double mean = complete_.rows.back() / (2.0 * static_cast<double>(w));
+    compensated_.cells.resize(w * h);
+    parallel_for(h, 16, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const double even = mean * (cos_theta_[y] - cos_theta_[y + 1]);
+            double sum = 0;
+            for (size_t x = 0; x < w; ++x) {
+                sum += max_of(complete_.cell(width_, uint32_t(x), uint32_t(y)) - even, 0.0);
+                compensated_.cells[y * w + x] = sum;
+            }
+        }
+    });
+    if (!(compensated_.finish(w) > kLeastCompensated * complete_.rows.back())) compensated_ = {};
+}
+
+double EnvironmentTable::CellMasses::finish(size_t width) {
+    rows.resize(cells.size() / width);
+    double total = 0;
+    for (size_t y = 0; y < rows.size(); ++y) rows[y] = total += cells[(y + 1) * width - 1];
+    return total;
 }
 
 MapPoint EnvironmentTable::map_point(Vec3 d) const noexcept {
@@ -131,23 +154,19 @@ Rgb EnvironmentTable::radiance_at(const Scene& scene, MapPoint at) const noexcep
     return (upper * (1 - wy) + lower * wy) * scale_;
 }
 
-double EnvironmentTable::cell_mass(uint32_t x, uint32_t y) const noexcept {
-    const double* row = cells_.data() + static_cast<size_t>(y) * width_;
-    return row[x] - (x > 0 ? row[x - 1] : 0.0);
-}
-
-EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u) const noexcept {
-    const double at_row = refine(u.y, choice >> 16) * rows_.back();
-    const auto y = static_cast<uint32_t>(find_interval(rows_.data(), height_, at_row));
-    const double in_row = at_row - (y > 0 ? rows_[y - 1] : 0.0);
-    const double* row = cells_.data() + static_cast<size_t>(y) * width_;
+EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u, EnvironmentDensity density) const noexcept {
+    const CellMasses& of = masses(density);
+    const double at_row = refine(u.y, choice >> 16) * of.rows.back();
+    const auto y = static_cast<uint32_t>(find_interval(of.rows.data(), height_, at_row));
+    const double in_row = at_row - (y > 0 ? of.rows[y - 1] : 0.0);
+    const double* row = of.cells.data() + static_cast<size_t>(y) * width_;
     const double at_cell = refine(u.x, choice & 0xffffu) * row[width_ - 1];
     const auto x = static_cast<uint32_t>(find_interval(row, width_, at_cell));
-    const double mass = cell_mass(x, y);
+    const double mass = of.cell(width_, x, y);
     const double in_cell = at_cell - (x > 0 ? row[x - 1] : 0.0);
 
     // What is left of both numbers is uniform within the cell: in the angle about +Y and in the height.
-    const double fx = clamp_to(in_cell / mass, 0.0, 1.0), fy = clamp_to(in_row / row_mass(y), 0.0, 1.0);
+    const double fx = clamp_to(in_cell / mass, 0.0, 1.0), fy = clamp_to(in_row / of.row(y), 0.0, 1.0);
     const double height = cos_theta_[y] + (cos_theta_[y + 1] - cos_theta_[y]) * fy;
     const math::SinCos phi = math::sin_cos(kTwoPi * ((x + fx) / width_ - 0.5));
     const double radius = std::sqrt(max_of((1 - height) * (1 + height), 0.0));
@@ -155,19 +174,19 @@ EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u) const noexce
     EnvironmentSample out;
     out.direction = normalize(static_cast<Vec3>(
         Vec3d(cos_rotation_ * mx + sin_rotation_ * mz, height, cos_rotation_ * mz - sin_rotation_ * mx)));
-    out.pdf = cell_pdf(x, y);
+    out.pdf = cell_pdf(of, x, y);
     return out;
 }
 
-double EnvironmentTable::cell_pdf(uint32_t x, uint32_t y) const noexcept {
+double EnvironmentTable::cell_pdf(const CellMasses& of, uint32_t x, uint32_t y) const noexcept {
     const double band = cos_theta_[y] - cos_theta_[y + 1];
-    return cell_mass(x, y) / (rows_.back() * band) * (width_ / kTwoPi);
+    return of.cell(width_, x, y) / (of.rows.back() * band) * (width_ / kTwoPi);
 }
 
-double EnvironmentTable::pdf_at(MapPoint at) const noexcept {
+double EnvironmentTable::pdf_at(MapPoint at, EnvironmentDensity density) const noexcept {
     const double x = clamp_to(std::floor(at.s * width_), 0.0, width_ - 1.0);
     const double y = clamp_to(std::floor(at.t * height_), 0.0, height_ - 1.0);
-    return cell_pdf(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+    return cell_pdf(masses(density), static_cast<uint32_t>(x), static_cast<uint32_t>(y));
 }
 
 }  // namespace steradian

@@ -16,6 +16,12 @@ struct EnvironmentSample {
     double pdf = 0;  ///< per solid angle
 };
 
+/// Which density directions are drawn with. `compensated` leaves out what lies below the mean, in favour of what lies
+/// above: for multiple importance sampling, where the BSDF finds the rest (Karlík, Šik, Vévoda, Skřivan & Křivánek
+/// 2019, "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling"). It is 0 where there may
+/// be light.
+enum class EnvironmentDensity : uint8_t { complete, compensated };
+
 /// Where a direction lies in the image, from its top left corner, both in [0, 1]; (0, 0) for directions that are not
 /// numbers.
 struct MapPoint {
@@ -24,7 +30,7 @@ struct MapPoint {
 
 /// A latitude-longitude image is interpolated bilinearly between texel centres, wraps around at the sides and is
 /// continued at the poles. Directions are drawn by texel, with the probability of the texel's mean luminance times its
-/// solid angle, and uniformly within one: so wherever there is radiance there is density.
+/// solid angle, and uniformly within one: so wherever there is radiance there is density, but for the compensated one.
 /// Without an image the radiance is constant, and nothing is tabulated.
 class EnvironmentTable {
 public:
@@ -45,19 +51,38 @@ public:
     // For images that are not empty() only.
 
     /// `choice` refines u below its 24 bits.
-    EnvironmentSample sample(uint32_t choice, Vec2 u) const noexcept;
-    double pdf(Vec3 d) const noexcept { return pdf_at(map_point(d)); }
+    EnvironmentSample sample(uint32_t choice, Vec2 u, EnvironmentDensity density) const noexcept;
+    double pdf(Vec3 d, EnvironmentDensity density) const noexcept { return pdf_at(map_point(d), density); }
 
     // The same for those who ask for both of one direction.
     MapPoint map_point(Vec3 d) const noexcept;
     Rgb radiance_at(const Scene& scene, MapPoint at) const noexcept;
-    double pdf_at(MapPoint at) const noexcept;
+    double pdf_at(MapPoint at, EnvironmentDensity density) const noexcept;
+
+    static constexpr uint64_t kBytesPerTexel = 2 * sizeof(double);
 
 private:
+    /// Cumulative masses of the texels.
+    struct CellMasses {
+        std::vector<double> rows;   ///< over rows, of the last element of each row of cells
+        std::vector<double> cells;  ///< within each row
+
+        /// Sums up the rows of `width` cells each; the total.
+        double finish(size_t width);
+        double row(uint32_t y) const noexcept { return rows[y] - (y > 0 ? rows[y - 1] : 0.0); }
+        double cell(uint32_t width, uint32_t x, uint32_t y) const noexcept {
+            const double* at = cells.data() + static_cast<size_t>(y) * width;
+            return at[x] - (x > 0 ? at[x - 1] : 0.0);
+        }
+    };
+
     void tabulate(const RawImage& image);
-    double row_mass(uint32_t y) const noexcept { return rows_[y] - (y > 0 ? rows_[y - 1] : 0.0); }
-    double cell_mass(uint32_t x, uint32_t y) const noexcept;
-    double cell_pdf(uint32_t x, uint32_t y) const noexcept;
+    void compensate();
+    /// Both are the complete ones where nothing is compensated.
+    const CellMasses& masses(EnvironmentDensity density) const noexcept {
+        return density == EnvironmentDensity::compensated && !compensated_.rows.empty() ? compensated_ : complete_;
+    }
+    double cell_pdf(const CellMasses& of, uint32_t x, uint32_t y) const noexcept;
 
     Rgb scale_;
     std::optional<ImageId> image_;
@@ -65,8 +90,7 @@ private:
     double cos_rotation_ = 1, sin_rotation_ = 0;
     bool empty_ = false;
     uint32_t width_ = 0, height_ = 0;
-    std::vector<double> rows_;       ///< cumulative over rows, of the last element of each row of cells_
-    std::vector<double> cells_;      ///< cumulative within each row
+    CellMasses complete_, compensated_;
     std::vector<double> cos_theta_;  ///< at the height_ + 1 borders between rows
 };
 

@@ -17,15 +17,15 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept 
 }
 
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
-                                        uint32_t choice, Vec2 u) noexcept {
-    const LightContext context{scene, light};
+                                        uint32_t choice, Vec2 u, EnvironmentDensity density) noexcept {
+    const LightContext context{scene, light, density};
     return std::visit([&](const auto& kind) { return sample_kind(kind, context, from, choice, u); },
                       scene.scene.lights[light]);
 }
 
-float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi,
-                const SurfacePoint* hit) noexcept {
-    const LightContext context{scene, light};
+float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi, const SurfacePoint* hit,
+                EnvironmentDensity density) noexcept {
+    const LightContext context{scene, light, density};
     return static_cast<float>(std::visit([&](const auto& kind) { return pdf_kind(kind, context, from, wi, hit); },
                                          scene.scene.lights[light]));
 }
@@ -42,7 +42,7 @@ Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 
 uint32_t distant_sources(const ShadingScene& scene) noexcept { return static_cast<uint32_t>(1 + scene.suns.size()); }
 
 DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera,
-                                 const SurfacePoint* from) noexcept {
+                                 const SurfacePoint* from, EnvironmentDensity density) noexcept {
     const auto sees = [&](const auto& light) { return !from_camera || light.visible_to_camera; };
     DistantRadiance out;
     out.light = source == kEnvironmentSource ? scene.environment_light : scene.suns[source - 1];
@@ -54,12 +54,12 @@ DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec
         if (!table.is_constant()) {
             const MapPoint at = table.map_point(d);
             out.radiance = table.radiance_at(scene.scene, at);
-            if (from && !table.empty()) out.pdf = static_cast<float>(table.pdf_at(at));
+            if (from && !table.empty()) out.pdf = static_cast<float>(table.pdf_at(at, density));
             return out;
         }
         out.radiance = table.radiance(scene.scene, d);
     }
-    if (from && !is_black(out.radiance)) out.pdf = pdf_light(scene, out.light, *from, d, nullptr);
+    if (from && !is_black(out.radiance)) out.pdf = pdf_light(scene, out.light, *from, d, nullptr, density);
     return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "math/ray.h"
 #include "math/vector.h"
+#include "shading/environment.h"
 #include "shading/surface.h"
 #include "steradian/scene.h"
 
@@ -28,12 +29,13 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
 /// environment is sampled on the side of from.ns only, and a surface that is seen from behind would get nothing from
 /// it.
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
-                                        uint32_t choice, Vec2 u) noexcept;
+                                        uint32_t choice, Vec2 u,
+                                        EnvironmentDensity density = EnvironmentDensity::complete) noexcept;
 
 /// The density with which sample_light chooses wi, given that a ray from `from` along wi sees the light at `hit` (for
 /// the environment `hit` is null). 0 for delta lights.
-float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi,
-                const SurfacePoint* hit) noexcept;
+float pdf_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, Vec3 wi, const SurfacePoint* hit,
+                EnvironmentDensity density = EnvironmentDensity::complete) noexcept;
 
 /// Radiance that an area light on this surface sends towards wo; black where there is none.
 Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 wo) noexcept;
@@ -50,7 +52,8 @@ inline constexpr uint32_t kEnvironmentSource = 0;
 uint32_t distant_sources(const ShadingScene& scene) noexcept;
 /// `from`: the point that lights were sampled from, if the density is wanted.
 DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec3 d, bool from_camera,
-                                 const SurfacePoint* from = nullptr) noexcept;
+                                 const SurfacePoint* from = nullptr,
+                                 EnvironmentDensity density = EnvironmentDensity::complete) noexcept;
 /// Of all of them together.
 Rgb sky_radiance(const ShadingScene& scene, Vec3 d, bool from_camera) noexcept;
 

@@ -148,7 +148,7 @@ struct Quarters {
     }
 };
 
-TEST(Environment, SamplesFollowTheDensity) {
+void samples_follow(EnvironmentDensity density) {
     const int n = test::by_tier(100000, 3000000);
     for (const Map& map : maps())
         for (const float rotation : {0.0f, 33.0f}) {
@@ -158,7 +158,8 @@ TEST(Environment, SamplesFollowTheDensity) {
             std::vector<double> expected(quarters.count() + 1), observed(quarters.count() + 1);
             double total = 0;
             for (size_t i = 0; i < quarters.count(); ++i) {
-                const double p = pdf_light(s.shading, 0, kUp, quarters.middle(i), nullptr) * quarters.solid_angle(i);
+                const double p =
+                    pdf_light(s.shading, 0, kUp, quarters.middle(i), nullptr, density) * quarters.solid_angle(i);
                 total += p;
                 // Directions from which nothing comes are no samples.
                 expected[is_black(environment_radiance(s.shading, quarters.middle(i))) ? quarters.count() : i] += p * n;
@@ -169,16 +170,49 @@ TEST(Environment, SamplesFollowTheDensity) {
             int mismatched = 0;
             for (int i = 0; i < n; ++i) {
                 const uint32_t choice = random.bits32();
-                const auto l = sample_light(s.shading, 0, kUp, choice, random.uniform2());
+                const auto l = sample_light(s.shading, 0, kUp, choice, random.uniform2(), density);
                 const size_t cell = l ? quarters.of(l->wi) : quarters.count();
                 ++observed[expected[cell] > 0 ? cell : quarters.count()];
                 // A direction within rounding of a border between texels may be on the other side of it.
-                if (l) mismatched += !(std::fabs(pdf_light(s.shading, 0, kUp, l->wi, nullptr) / l->pdf - 1) < 1e-5f);
+                if (!l) continue;
+                const float pdf = pdf_light(s.shading, 0, kUp, l->wi, nullptr, density);
+                mismatched += !(std::fabs(pdf / l->pdf - 1) < 1e-5f);
             }
             const test::ChiSquare result = test::chi_square(observed, expected);
             EXPECT_TRUE(result.passes()) << result;
             EXPECT_LE(mismatched, 1 + n / 10000);
         }
+}
+
+TEST(Environment, SamplesFollowTheDensity) { samples_follow(EnvironmentDensity::complete); }
+TEST(Environment, SamplesFollowTheCompensatedDensity) { samples_follow(EnvironmentDensity::compensated); }
+
+/// What the complete density has above that of all directions alike; nothing is left out where nothing is above.
+TEST(Environment, CompensationKeepsWhatLiesAboveTheMean) {
+    constexpr double kUniform = 1 / (4 * std::numbers::pi);
+    Random random(4);
+    for (const Map& map : maps()) {
+        const Sky s = sky(map.width, map.height, map.texels, 20);
+        const auto densities = [&](Vec3 d) {
+            return std::pair<double, double>(pdf_light(s.shading, 0, kUp, d, nullptr),
+                                             pdf_light(s.shading, 0, kUp, d, nullptr, EnvironmentDensity::compensated));
+        };
+        double scale = 1;  // where it has most
+        double most = 0;
+        std::vector<std::pair<double, double>> all;
+        const Quarters quarters{map, 20 * std::numbers::pi / 180};
+        for (size_t i = 0; i < quarters.count(); ++i) all.push_back(densities(quarters.middle(i)));
+        for (const auto& [complete, compensated] : all)
+            if (complete > most) most = complete, scale = compensated / (complete - kUniform);
+        if (map.name == std::string("one texel")) {
+            for (const auto& [complete, compensated] : all) EXPECT_EQ(complete, compensated);
+            continue;
+        }
+        EXPECT_GT(scale, 1) << map.name;
+        for (const auto& [complete, compensated] : all)
+            EXPECT_NEAR(compensated, scale * max_of(complete - kUniform, 0.0), 1e-5 * scale * (complete + kUniform))
+                << map.name;
+    }
 }
 
 TEST(Environment, ThereIsDensityWhereverThereIsRadiance) {

@@ -27,7 +27,7 @@ inline std::optional<LightSample> sample_kind(const EnvironmentLight&, const Lig
         out.wi = normalize(Frame::from_z(from.ns).to_world(local));
         out.pdf = constant_sky_pdf(from, out.wi);
     } else {
-        const EnvironmentSample at = table.sample(choice, u);
+        const EnvironmentSample at = table.sample(choice, u, context.density);
         out.wi = at.direction;
         out.pdf = static_cast<float>(at.pdf);
     }
@@ -41,7 +41,7 @@ inline double pdf_kind(const EnvironmentLight&, const LightContext& context, con
                        const SurfacePoint* hit) {
     const EnvironmentTable& table = *context.scene.environment;
     if (hit || table.empty()) return 0;
-    return table.is_constant() ? constant_sky_pdf(from, wi) : table.pdf(wi);
+    return table.is_constant() ? constant_sky_pdf(from, wi) : table.pdf(wi, context.density);
 }
 
 }  // namespace steradian

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "shading/environment.h"
 #include "shading/light.h"
 #include "shading/shading_scene.h"
 #include "shading/surface_error.h"
@@ -16,6 +17,7 @@ namespace steradian {
 struct LightContext {
     const ShadingScene& scene;
     uint32_t light = 0;
+    EnvironmentDensity density = EnvironmentDensity::complete;
     const ShadingScene::LightData& data() const { return scene.lights[light]; }
 };
 
