@@ -105,6 +105,29 @@ std::string file(const Compressed& c, const std::string& index_type = "5123", co
         "]}], \"nodes\": [{\"mesh\": 0}]");
 }
 
+TEST(GltfDraco, ManyAttributesAreNotLookedUpOneByOne) {
+    constexpr int kMany = 2000;
+    const Compressed c = compress(draco::MESH_EDGEBREAKER_ENCODING, 11);
+    GltfBuilder b;
+    const std::string view = std::to_string(b.view(c.bytes)), count = std::to_string(c.points);
+    b.raw_accessor("\"componentType\": 5126, \"type\": \"VEC3\", \"count\": " + count);
+    b.raw_accessor("\"componentType\": 5125, \"type\": \"SCALAR\", \"count\": " + std::to_string(3 * c.faces));
+    std::string here, there;
+    for (int i = 0; i < kMany; ++i) {
+        here += "\"_A" + std::to_string(i) + "\": 0, ";
+        there += "\"_B" + std::to_string(i) + "\": 0, ";
+    }
+    const std::string text = b.text(
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {" + here +
+        "\"POSITION\": 0}, \"indices\": 1, \"extensions\": {\"KHR_draco_mesh_compression\": {\"bufferView\": " + view +
+        ", \"attributes\": {" + there + "\"POSITION\": " + std::to_string(c.ids.position) +
+        "}}}}]}], \"nodes\": [{\"mesh\": 0}]");
+    uint64_t steps = 0;
+    const LoadedScene loaded = gltf::load(text, "test.gltf", "/nonexistent", {}, &steps);
+    EXPECT_EQ(loaded.scene.meshes.at(0).indices.size(), 3 * c.faces);
+    EXPECT_LT(steps, uint64_t(kMany) * kMany / 10);
+}
+
 /// What the library makes of the data by itself.
 std::unique_ptr<draco::Mesh> decoded_by_library(const Compressed& c) {
     draco::DecoderBuffer buffer;

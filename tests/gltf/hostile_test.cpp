@@ -153,25 +153,6 @@ TEST(GltfHostile, ViewsThatLeaveTheirBuffer) {
     expect_refused(with_view("\"byteLength\": 36", "\"byteLength\": 37"), "/buffers/0/byteLength", "claims 37");
 }
 
-TEST(GltfHostile, OneHugeObjectThatManyReferToIsReadOnce) {
-    // 50 000 keys in an accessor and its view, and 20 000 primitives that use them: slow if each looks for its keys.
-    std::string junk, primitives, accessors;
-    constexpr int kKeys = 50'000, kPrimitives = 20'000;
-    for (int i = 0; i < kKeys; ++i) junk += "\"k" + std::to_string(i) + "\": 0, ";
-    for (int i = 1; i <= kPrimitives; ++i) {
-        accessors += ", {\"componentType\": 5121, \"count\": 3, \"type\": \"SCALAR\"}";
-        primitives += std::string(i > 1 ? "," : "") +
-                      "{\"attributes\": {\"POSITION\": 0}, \"indices\": " + std::to_string(i) + "}";
-    }
-    const std::string text =
-        "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 36, \"uri\": \"data:;base64," +
-        base64(std::string(36, '\0')) + "\"}], \"bufferViews\": [{" + junk +
-        "\"buffer\": 0, \"byteLength\": 36}], \"accessors\": [{" + junk +
-        "\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}" + accessors +
-        "], \"meshes\": [{\"primitives\": [" + primitives + "]}], \"nodes\": [{\"mesh\": 0}]}";
-    EXPECT_EQ(good_gltf(text).scene.instances.size(), size_t(kPrimitives));
-}
-
 // --- What is no file ---
 
 class GltfSpecialFiles : public ::testing::Test {

@@ -205,7 +205,12 @@ bool read_attribute(const draco::Mesh& mesh, const draco::PointAttribute& a, con
 
 }  // namespace
 
-const draco::Mesh& DracoMeshes::mesh(const Object& extension) {
+struct DracoMeshes::Decoded {
+    draco::Mesh mesh;
+    std::map<uint32_t, const draco::PointAttribute*> attributes;  ///< by their ids; the first of each
+};
+
+const DracoMeshes::Decoded& DracoMeshes::open(const Object& extension) {
     const uint32_t number = extension.require_reference("bufferView", context_.tables.buffer_views);
     if (const auto known = meshes_.find(number); known != meshes_.end()) return *known->second;
     const auto bytes = buffers_.view(number).bytes;
@@ -229,11 +234,13 @@ const draco::Mesh& DracoMeshes::mesh(const Object& extension) {
         }
         return !refused;
     };
-    auto mesh = std::make_shared<draco::Mesh>();
-    const draco::Status status = decode(bytes, afford, *mesh);
+    auto out = std::make_shared<Decoded>();
+    const draco::Status status = decode(bytes, afford, out->mesh);
     if (refused) throw std::move(*refused);
     if (!status.ok()) fail("the Draco data cannot be decoded");
-    return *meshes_.emplace(number, std::move(mesh)).first->second;
+    for (int32_t i = 0; i < out->mesh.num_attributes(); ++i)
+        out->attributes.emplace(out->mesh.attribute(i)->unique_id(), out->mesh.attribute(i));
+    return *meshes_.emplace(number, std::move(out)).first->second;
 }
 
 void Accessors::decompress(const Object& primitive) {
@@ -241,7 +248,10 @@ void Accessors::decompress(const Object& primitive) {
     if (!extension) return;
     const Object attributes(context_.source, primitive.require("attributes"), "'attributes'");
     const Object ids(context_.source, extension->require("attributes"), "'attributes'");
-    const draco::Mesh& mesh = draco_.mesh(*extension);
+    const DracoMeshes::Decoded& decoded = draco_.open(*extension);
+    const draco::Mesh& mesh = decoded.mesh;
+    std::map<std::string_view, Value> accessors;
+    for (const json::Member member : attributes.value().members()) accessors.emplace(member.key, member.value);
     if (primitive.integer_or("mode", 4, 0, 6) != 4)
         context_.source.fail(primitive.offset_of("mode"), "a primitive with Draco data must have the mode 4 here");
 
@@ -264,13 +274,15 @@ void Accessors::decompress(const Object& primitive) {
     };
     for (const json::Member member : ids.value().members()) {
         const uint64_t id = json::read_integer(context_.source, member.value, quoted(member.key), 0, 0xffffffffu);
-        const auto number = attributes.reference(member.key, context_.tables.accessors);
-        if (!number || !decompressed_.insert(*number).second) continue;
-        const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(static_cast<uint32_t>(id));
-        if (!attribute)
+        const auto named = accessors.find(member.key);
+        if (named == accessors.end()) continue;
+        const uint32_t number = read_reference(context_.source, named->second, member.key, context_.tables.accessors);
+        if (!decompressed_.insert(number).second) continue;
+        const auto attribute = decoded.attributes.find(static_cast<uint32_t>(id));
+        if (attribute == decoded.attributes.end())
             context_.source.fail(member.value.offset(), "the Draco data have no attribute " + std::to_string(id));
-        put(*number, mesh.num_points(), [&](const Accessor& accessor, std::byte* out) {
-            if (!read_attribute(mesh, *attribute, accessor, out))
+        put(number, mesh.num_points(), [&](const Accessor& accessor, std::byte* out) {
+            if (!read_attribute(mesh, *attribute->second, accessor, out))
                 context_.source.fail(member.value.offset(), "the Draco attribute is not of the accessor's type: " +
                                                                 std::to_string(accessor.components) + " times " +
                                                                 std::string(name_of(accessor.component)));

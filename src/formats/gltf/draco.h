@@ -6,10 +6,6 @@
 
 #include "formats/gltf/buffers.h"
 
-namespace draco {
-class Mesh;
-}
-
 namespace steradian::gltf {
 
 /// What is in a buffer view, decoded when it is first asked for. What is quantised is still as the whole numbers that
@@ -18,12 +14,13 @@ class DracoMeshes {
 public:
     DracoMeshes(Context& context, Buffers& buffers) : context_(context), buffers_(buffers) {}
 
-    const draco::Mesh& mesh(const Object& extension);
+    struct Decoded;
+    const Decoded& open(const Object& extension);
 
 private:
     Context& context_;
     Buffers& buffers_;
-    std::map<uint32_t, std::shared_ptr<const draco::Mesh>> meshes_;  ///< by buffer view
+    std::map<uint32_t, std::shared_ptr<const Decoded>> meshes_;  ///< by buffer view
 };
 
 }  // namespace steradian::gltf

@@ -15,7 +15,8 @@ T value_or_throw(Result<T> result) {
 
 }  // namespace
 
-LoadedScene load(std::string_view bytes, const std::string& name, const std::string& folder, const LoadOptions& given) {
+LoadedScene load(std::string_view bytes, const std::string& name, const std::string& folder, const LoadOptions& given,
+                 uint64_t* lookup_steps) {
     LoadedScene loaded;
     LoadOptions options = given;
     if (!options.allow_outside_paths) options.allow_outside_paths = false;
@@ -42,6 +43,7 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     images.decode();
     const bool sky_to_see = options.environment.replace.has_value();
     if (loaded.scene.instances.empty() && !sky_to_see) context.warn("the scene has nothing to render", root.offset());
+    if (lookup_steps) *lookup_steps = source.lookup_steps();
     return loaded;
 }
 

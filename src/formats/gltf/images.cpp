@@ -54,6 +54,28 @@ uint32_t Images::image_of(const Object& texture, size_t offset) {
                          "the material that uses it is at " + context_.source.where(offset).str());
 }
 
+const ImageTexture& Images::open_sampler(uint32_t number) {
+    if (const auto known = samplers_.find(number); known != samplers_.end()) return known->second;
+    const Object sampler(context_.source, context_.tables.samplers.elements[number], "a sampler");
+    constexpr uint64_t kNearest = 9728;
+    ImageTexture out;
+    out.wrap_u = read_wrap(sampler, "wrapS");
+    out.wrap_v = read_wrap(sampler, "wrapT");
+    out.bilinear = sampler.integer_or("magFilter", 0, 0, 0xffff) != kNearest;
+    return samplers_.emplace(number, out).first->second;
+}
+
+const Images::OpenTexture& Images::open_texture(uint32_t number, size_t offset) {
+    if (const auto known = open_textures_.find(number); known != open_textures_.end()) return known->second;
+    const Object texture(context_.source, context_.tables.textures.elements[number], "a texture");
+    OpenTexture out;
+    if (const auto sampler = texture.reference("sampler", context_.tables.samplers))
+        out.sampled = open_sampler(*sampler);
+    out.image = image_of(texture, offset);
+    out.name = texture.string_or("name", "");
+    return open_textures_.emplace(number, std::move(out)).first->second;
+}
+
 TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) {
     const TextureKey key{use.texture,
                          plane,
@@ -61,22 +83,16 @@ TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) 
                          use.uv_set,
                          {use.uv_scale.x, use.uv_scale.y, use.uv_offset.x, use.uv_offset.y, use.uv_rotation}};
     if (const auto known = textures_.find(key); known != textures_.end()) return known->second;
-    const Object texture(context_.source, context_.tables.textures.elements[use.texture], "a texture");
-    ImageTexture out;
+    const OpenTexture& opened = open_texture(use.texture, use.offset);
+    ImageTexture out = opened.sampled;
     out.color_space = space;
     out.scale = use.uv_scale;
     out.offset = use.uv_offset;
     out.rotation = use.uv_rotation;
     out.uv_set = use.uv_set;
-    if (const auto number = texture.reference("sampler", context_.tables.samplers)) {
-        const Object sampler(context_.source, context_.tables.samplers.elements[*number], "a sampler");
-        out.wrap_u = read_wrap(sampler, "wrapS");
-        out.wrap_v = read_wrap(sampler, "wrapT");
-        constexpr uint64_t kNearest = 9728;
-        out.bilinear = sampler.integer_or("magFilter", 0, 0, 0xffff) != kNearest;
-    }
-    out.image = plane_of(image_of(texture, use.offset), plane);
-    const TextureId id = context_.assets.add_texture(out, std::string(texture.string_or("name", "")));
+    out.image = plane_of(opened.image, plane);
+    context_.budget.take(sizeof(Texture) + opened.name.size(), context_.source, use.offset);
+    const TextureId id = context_.assets.add_texture(out, opened.name);
     return textures_.emplace(key, id).first->second;
 }
 

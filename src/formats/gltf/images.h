@@ -41,6 +41,15 @@ private:
         size_t offset = 0;
         std::array<std::optional<ImageId>, 5> planes{};
     };
+    /// What an element of "textures" says.
+    struct OpenTexture {
+        ImageTexture sampled;  ///< with its sampler's wrapping and filter
+        uint32_t image = 0;
+        std::string name;
+    };
+    /// `offset`: of what uses it, for messages.
+    const OpenTexture& open_texture(uint32_t number, size_t offset);
+    const ImageTexture& open_sampler(uint32_t number);
     ImageId plane_of(uint32_t image, Plane plane);
     Image open(uint32_t number);
     uint32_t image_of(const Object& texture, size_t offset);
@@ -51,6 +60,9 @@ private:
     Context& context_;
     Buffers& buffers_;
     std::map<uint32_t, Image> images_;
+    // Each is read once, however many textures and materials use it.
+    std::map<uint32_t, OpenTexture> open_textures_;
+    std::map<uint32_t, ImageTexture> samplers_;
     using TextureKey = std::tuple<uint32_t, Plane, ColorSpace, uint32_t, std::array<float, 5>>;
     std::map<TextureKey, TextureId> textures_;
 };

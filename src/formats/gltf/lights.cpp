@@ -8,6 +8,7 @@ namespace steradian::gltf {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr Vec3 kForward{0, 0, -1};
 
 SpotLight read_spot(Context& context, const Object& light, Rgb intensity) {
     const Object spot(context.source, light.require("spot"), "'spot'");
@@ -25,7 +26,7 @@ SpotLight read_spot(Context& context, const Object& light, Rgb intensity) {
 
 }  // namespace
 
-Light read_light(Context& context, const Object& light, const Affine& world_from_node) {
+Light read_light(Context& context, const Object& light) {
     static constexpr std::array<std::string_view, 3> kTypes{"point", "spot", "directional"};
     const size_t type = json::read_choice(context.source, light.require("type"), "'type'", kTypes);
     const Rgb color = light.color_or("color", {1, 1, 1}, {0, 1e15});
@@ -36,15 +37,19 @@ Light read_light(Context& context, const Object& light, const Affine& world_from
     if (light.has("range"))
         context.not_honoured("the 'range' of lights has no effect: light falls off with the square of the distance",
                              light.offset_of("range"));
+    if (type == 0) return PointLight{{0, 0, 0}, intensity};
+    if (type == 2) return DirectionalLight{kForward, intensity};
+    return read_spot(context, light, intensity);
+}
+
+Light placed(Light light, const Affine& world_from_node) {
     const Vec3 position(transform_point(world_from_node, Vec3{0, 0, 0}));
-    Vec3 direction(normalize(transform_vector(world_from_node, Vec3{0, 0, -1})));
-    if (direction == Vec3{}) direction = {0, 0, -1};
-    if (type == 0) return PointLight{position, intensity};
-    if (type == 2) return DirectionalLight{direction, intensity};
-    SpotLight spot = read_spot(context, light, intensity);
-    spot.position = position;
-    spot.direction = direction;
-    return spot;
+    Vec3 direction(normalize(transform_vector(world_from_node, kForward)));
+    if (direction == Vec3{}) direction = kForward;
+    if (auto* point = std::get_if<PointLight>(&light)) point->position = position;
+    if (auto* sun = std::get_if<DirectionalLight>(&light)) sun->direction = direction;
+    if (auto* spot = std::get_if<SpotLight>(&light)) spot->position = position, spot->direction = direction;
+    return light;
 }
 
 }  // namespace steradian::gltf

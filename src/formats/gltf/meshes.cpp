@@ -193,6 +193,7 @@ std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, 
     if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;
     std::optional<ShapeId> made;
     if (auto mesh = read(primitive, key)) {
+        context_.budget.take(sizeof(Mesh) + sizeof(Shape) + 2 * name.size(), context_.source, primitive.offset());
         const MeshId id = context_.assets.add_mesh(std::move(*mesh), name);
         made = context_.assets.add_shape(id, name);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "math/transform.h"
 
@@ -62,6 +63,16 @@ private:
         uint32_t node;
         size_t offset;  ///< of what names it
     };
+    // Read once, however many nodes refer to them.
+    struct NamedLight {
+        Light light;
+        std::string name;
+    };
+    struct NamedCamera {
+        ReadCamera camera;
+        std::string name;
+        size_t offset;
+    };
     struct Step {
         uint32_t node;
         Affine world_from_parent;
@@ -104,12 +115,12 @@ private:
         if (const auto mesh = node.reference("mesh", context_.tables.meshes))
             place_mesh(node, *mesh, world_from_node, name);
         if (const auto camera = node.reference("camera", context_.tables.cameras))
-            place_camera(*camera, world_from_node, name);
+            place_camera(node, *camera, world_from_node, name);
         if (const auto punctual = node.extension("KHR_lights_punctual")) {
-            const uint32_t light = punctual->require_reference("light", context_.tables.lights);
-            const Object object(context_.source, context_.tables.lights.elements[light], "a light");
-            context_.assets.add_light(read_light(context_, object, world_from_node),
-                                      name.empty() ? name_of(object, "light", light) : name);
+            const NamedLight& light = open_light(punctual->require_reference("light", context_.tables.lights));
+            const std::string& shown = name.empty() ? light.name : name;
+            context_.budget.take(sizeof(Light) + shown.size(), context_.source, node.offset());
+            context_.assets.add_light(placed(light.light, world_from_node), shown);
         }
         const auto first = static_cast<std::ptrdiff_t>(open.size());
         for (const Value child : node.array("children"))
@@ -137,30 +148,53 @@ private:
         for (const Meshes::Part& part : parts) {
             const InstanceId instance =
                 context_.assets.add_instance({part.shape, part.look.material, world_from_node}, name);
-            if (!is_black(part.look.emission))
+            if (!is_black(part.look.emission)) {
+                context_.budget.take(sizeof(Light) + name.size(), context_.source, node.offset());
                 context_.assets.add_light(AreaLight{instance, part.look.emission, part.look.two_sided, 1}, name);
+            }
         }
     }
 
     /// The first camera decides the shape of the picture, which has as many pixels as it has by default.
-    void place_camera(uint32_t camera, const Affine& world_from_node, const std::string& name) {
-        const Object object(context_.source, context_.tables.cameras.elements[camera], "a camera");
-        const PlacedCamera placed = read_camera(context_, object, world_from_node);
-        if (context_.loaded.scene.cameras.empty() && placed.aspect) {
+    void place_camera(const Object& node, uint32_t number, const Affine& world_from_node, const std::string& name) {
+        const NamedCamera& named = open_camera(number);
+        const auto camera = placed(named.camera.camera, world_from_node);
+        if (!camera) context_.source.fail(named.offset, "the node of this camera is scaled to nothing");
+        if (context_.loaded.scene.cameras.empty() && named.camera.aspect) {
             RenderSettings& settings = context_.loaded.settings;
             constexpr double kMostUneven = 8;
-            const double aspect = clamp_to(*placed.aspect, 1 / kMostUneven, kMostUneven);
+            const double aspect = clamp_to(*named.camera.aspect, 1 / kMostUneven, kMostUneven);
             const double root = std::sqrt(aspect), side = settings.width;
             settings.width = static_cast<uint32_t>(side * root + 0.5);
             settings.height = static_cast<uint32_t>(side / root + 0.5);
         }
-        context_.assets.add_camera(placed.camera, name.empty() ? name_of(object, "camera", camera) : name);
+        const std::string& shown = name.empty() ? named.name : name;
+        context_.budget.take(sizeof(Camera) + shown.size(), context_.source, node.offset());
+        context_.assets.add_camera(*camera, shown);
+    }
+
+    const NamedLight& open_light(uint32_t number) {
+        if (const auto known = lights_.find(number); known != lights_.end()) return known->second;
+        const Object object(context_.source, context_.tables.lights.elements[number], "a light");
+        return lights_.emplace(number, NamedLight{read_light(context_, object), name_of(object, "light", number)})
+            .first->second;
+    }
+
+    const NamedCamera& open_camera(uint32_t number) {
+        if (const auto known = cameras_.find(number); known != cameras_.end()) return known->second;
+        const Object object(context_.source, context_.tables.cameras.elements[number], "a camera");
+        return cameras_
+            .emplace(number,
+                     NamedCamera{read_camera(context_, object), name_of(object, "camera", number), object.offset()})
+            .first->second;
     }
 
     Context& context_;
     Accessors& accessors_;
     Meshes& meshes_;
     std::vector<bool> seen_;
+    std::map<uint32_t, NamedLight> lights_;
+    std::map<uint32_t, NamedCamera> cameras_;
 };
 
 }  // namespace

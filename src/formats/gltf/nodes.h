@@ -15,14 +15,18 @@ std::vector<Affine> read_instances(Context& context, Accessors& accessors, const
 /// A node's own transform: its matrix, or its translation, rotation and scale.
 Affine node_transform(Context& context, const Object& node);
 
-/// KHR_lights_punctual. The light shines along -z of the node.
-Light read_light(Context& context, const Object& light, const Affine& world_from_node);
+/// KHR_lights_punctual. The light is at the origin and shines along -z.
+Light read_light(Context& context, const Object& light);
+/// The same at a node.
+Light placed(Light light, const Affine& world_from_node);
 
-/// Looks along -z of the node; scale is not the camera's. `aspect`: width over height, where the camera says it.
-struct PlacedCamera {
+/// At no place yet. `aspect`: width over height, where the camera says it.
+struct ReadCamera {
     Camera camera;
     std::optional<double> aspect;
 };
-PlacedCamera read_camera(Context& context, const Object& camera, const Affine& world_from_node);
+ReadCamera read_camera(Context& context, const Object& camera);
+/// At a node, along whose -z it looks; scale is not the camera's. Nothing where the node is scaled to nothing.
+std::optional<Camera> placed(const Camera& camera, const Affine& world_from_node);
 
 }  // namespace steradian::gltf

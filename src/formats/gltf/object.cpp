@@ -11,8 +11,10 @@ Object::Object(const Source& source, Value value, std::string_view what)
 }
 
 std::optional<Value> Object::find(std::string_view key) const {
-    for (const json::Member member : value_.members())
+    for (const json::Member member : value_.members()) {
+        source_->count_lookup_step();
         if (member.key == key) return member.value;
+    }
     return std::nullopt;
 }
 

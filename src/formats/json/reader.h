@@ -39,6 +39,10 @@ public:
         return std::move(result).value();
     }
 
+    /// Members that lookups have passed, by readers that count: what a file costs, told without a clock.
+    uint64_t lookup_steps() const noexcept { return lookup_steps_; }
+    void count_lookup_step() const noexcept { ++lookup_steps_; }
+
 private:
     [[noreturn]] void fail(Error error, size_t offset) const;
     Error error(size_t offset, std::string message, std::string hint, ErrorCode code) const;
@@ -48,6 +52,7 @@ private:
     const Document* pointers_ = nullptr;
     std::optional<uint64_t> begin_;
     mutable std::vector<size_t> line_starts_;  ///< filled on first use
+    mutable uint64_t lookup_steps_ = 0;
 };
 
 /// Limits of a number; `open` ends are excluded themselves.
