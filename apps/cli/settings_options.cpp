@@ -285,7 +285,7 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
         ->group("Picture");
     add_count<uint64_t>(c, "--gltf-memory", options.gltf_memory, 0, 1 << 20,
                         "MiB that a glTF file's geometry and texels may take even where that is more than 256 times\n"
-                        "the bytes of the file: 320 unless said otherwise, against hostile files")
+                        "the bytes in use: 320 unless said otherwise, against hostile files")
         ->group("Picture");
     add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(),
                "path: all light; direct: what arrives without detours; ao: ambient occlusion. To look at a scene:\n"

@@ -38,7 +38,8 @@ struct LoadOptions {
     std::optional<bool> allow_outside_paths = std::nullopt;
     EnvironmentOptions environment{};
     /// What a glTF file may make of itself, geometry and texels together, even where that is more than 256 times the
-    /// bytes that it has. At most as much again is taken for a while to decode its pictures.
+    /// bytes of it that are in use; and what may be made of none, as zeros are. At most as much again is taken for a
+    /// while to decode its pictures.
     uint64_t gltf_free_bytes = uint64_t(320) << 20;
     GltfLightUnits gltf_light_units = GltfLightUnits::radiometric;
     std::string gltf_variant = {};  ///< of KHR_materials_variants, by name; empty: none

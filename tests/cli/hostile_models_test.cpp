@@ -78,6 +78,7 @@ TEST_F(HostileModels, ThingsThatAreNotThere) {
         return b.binary(one_mesh(b.raw_accessor(vec3 + count)) + more);
     };
     expect_cheap(zeros("4294967295"), "(/meshes/0/primitives/0)");
+    expect_cheap(zeros("45000000") + std::string(3'000'000, ' '), "(/accessors/0)");  // padding is no credit
     expect_cheap(zeros("18000000"), "", true);  // 288 MB: the most that is allowed is cheap enough
     std::string buffer =
         "\"buffers\": [{\"byteLength\": 9007199254740992}], \"bufferViews\": [{\"buffer\": 0, "

@@ -136,6 +136,7 @@ const std::byte* Accessors::open_array(const Object& object, uint64_t count, uin
                                                   " bytes from byte " + std::to_string(begin) +
                                                   " do not fit into a buffer view with " +
                                                   std::to_string(view.bytes.size()));
+    context_.budget.grant(view.bytes.subspan(begin, count * element_size));
     return view.bytes.data() + begin;
 }
 
@@ -196,6 +197,7 @@ Accessor Accessors::check(uint32_t number) {
             context_.source.fail(object.offset(), "the accessor needs " + std::to_string(needed) + " bytes from byte " +
                                                       std::to_string(begin) + " of a buffer view with " +
                                                       std::to_string(view.bytes.size()));
+        context_.budget.grant(view.bytes.subspan(begin, needed));
         out.data = view.bytes.data() + begin;
     } else if (object.has("byteOffset")) {
         context_.warn("the byteOffset of an accessor without a buffer view has no effect",
@@ -205,10 +207,18 @@ Accessor Accessors::check(uint32_t number) {
     return out;
 }
 
+/// Before elements of `size` bytes are made of an accessor's.
+void Accessors::claim(const Accessor& a, size_t size) {
+    if (a.data)
+        context_.budget.take(a.count * size, context_.source, a.offset);
+    else
+        context_.budget.take_unread(a.count * size, context_.source, a.offset);
+}
+
 /// `set` makes an element of its components.
 template <class T, class Set>
 std::vector<T> Accessors::read(const Accessor& a, Set set) {
-    context_.budget.take(a.count * sizeof(T), context_.source, a.offset);
+    claim(a, sizeof(T));
     std::vector<T> out(a.count);
     if (a.data)
         for (uint64_t i = 0; i < a.count; ++i) out[i] = set([&](uint32_t c) { return a.number(i, c); });
@@ -243,7 +253,7 @@ std::vector<Tangent> Accessors::read_tangents(const Accessor& accessor) {
 std::vector<uint32_t> Accessors::read_indices(const Accessor& a) {
     if (a.components != 1 || !is_index_type(a.component) || a.normalized)
         context_.source.fail(a.offset, "indices must be scalars of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT");
-    context_.budget.take(a.count * sizeof(uint32_t), context_.source, a.offset);
+    claim(a, sizeof(uint32_t));
     std::vector<uint32_t> out(a.count);
     if (a.data)
         for (uint64_t i = 0; i < a.count; ++i)

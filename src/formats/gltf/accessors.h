@@ -63,6 +63,7 @@ private:
     Accessor check(uint32_t number);
     Accessor::Sparse open_sparse(const Object& sparse, const Accessor& accessor);
     const std::byte* open_array(const Object& object, uint64_t count, uint64_t element_size);
+    void claim(const Accessor& accessor, size_t size);
     template <class T, class Set>
     std::vector<T> read(const Accessor& accessor, Set set);
 

@@ -32,10 +32,7 @@ std::shared_ptr<const std::string> Buffers::read_uri(std::string_view uri, size_
         if (auto bytes = known->second.lock()) return bytes;
     auto bytes = std::make_shared<const std::string>(
         context_.source.take(read_file(path, context_.options.max_file_bytes), offset));
-    if (files_.insert_or_assign(path, bytes).second) {
-        context_.loaded.files.push_back(path);
-        context_.budget.grant(bytes->size());
-    }
+    if (files_.insert_or_assign(path, bytes).second) context_.loaded.files.push_back(path);
     return bytes;
 }
 
@@ -53,8 +50,9 @@ Buffers::Bytes Buffers::buffer(uint32_t number) {
     } else {
         // Extensions may say where its data are; nothing else does.
         context_.warn("a buffer has no data: zeros are used", buffer.offset());
-        context_.budget.take(length, context_.source, buffer.offset());
+        context_.budget.take_unread(length, context_.source, buffer.offset());
         bytes = *owned_.emplace_back(std::make_shared<const std::string>(length, '\0'));
+        context_.budget.disown(std::as_bytes(std::span(bytes)));
     }
     if (bytes.size() < length)
         context_.source.fail(
@@ -93,10 +91,14 @@ Buffers::Bytes Buffers::decompress(const Object& view, const Object& extension) 
                                                                " bytes, but its data are " +
                                                                std::to_string(header.bytes()) + " when decompressed");
     const Bytes compressed = part_of_buffer(extension);
+    context_.budget.grant(compressed);
     context_.budget.take(header.bytes(), context_.source, extension.offset());
     auto bytes = meshopt::decode(header, compressed);
     if (!bytes) context_.source.fail(extension.offset(), "the data are not compressed as the extension says");
-    return std::as_bytes(std::span(*owned_.emplace_back(std::make_shared<const std::string>(std::move(*bytes)))));
+    const Bytes out =
+        std::as_bytes(std::span(*owned_.emplace_back(std::make_shared<const std::string>(std::move(*bytes)))));
+    context_.budget.disown(out);
+    return out;
 }
 
 Buffers::View Buffers::check(uint32_t number) {

@@ -70,16 +70,44 @@ Tables::Tables(const Object& root) {
     if (const auto all = root.extension("KHR_materials_variants")) variants.elements = all->array(variants.key);
 }
 
-void Budget::take(uint64_t bytes, const Source& source, size_t offset) {
-    const uint64_t limit = max_of(free_, kMaxExpansion * read_);
-    if (bytes <= limit - taken_) {
-        taken_ += bytes;
-        return;
+/// How many of the bytes had not been covered.
+uint64_t Budget::cover(std::span<const std::byte> bytes) {
+    if (bytes.empty()) return 0;
+    const std::byte *begin = bytes.data(), *end = begin + bytes.size();
+    auto at = covered_.upper_bound(begin);
+    if (at != covered_.begin() && std::prev(at)->second >= begin) --at;
+    uint64_t known = 0;
+    while (at != covered_.end() && at->first <= end) {
+        known += static_cast<uint64_t>(at->second - at->first);
+        begin = min_of(begin, at->first);
+        end = max_of(end, at->second);
+        at = covered_.erase(at);
     }
+    covered_.emplace(begin, end);
+    return static_cast<uint64_t>(end - begin) - known;
+}
+
+void Budget::grant(std::span<const std::byte> used) { read_ += cover(used); }
+
+void Budget::refuse(uint64_t limit, const Source& source, size_t offset) const {
     source.fail(offset,
                 "this makes more than " + std::to_string(limit >> 20) + " MiB of " + std::to_string(read_) +
                     " bytes, expected at most " + std::to_string(kMaxExpansion) + " times as much",
                 "if the file is to be trusted, --gltf-memory allows more", ErrorCode::resources);
+}
+
+void Budget::take(uint64_t bytes, const Source& source, size_t offset) {
+    const uint64_t limit = max_of(free_, kMaxExpansion * read_);
+    if (bytes > limit - taken_) refuse(limit, source, offset);
+    taken_ += bytes;
+}
+
+void Budget::take_unread(uint64_t bytes, const Source& source, size_t offset) {
+    if (bytes > free_ - unread_)
+        source.fail(offset, "this makes more than " + std::to_string(free_ >> 20) + " MiB of what stands in no file",
+                    "if the file is to be trusted, --gltf-memory allows more", ErrorCode::resources);
+    unread_ += bytes;
+    take(bytes, source, offset);
 }
 
 void Context::say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset) {

@@ -1,8 +1,11 @@
 // What all parts of the glTF reader share.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 #include "formats/assets.h"
@@ -21,20 +24,35 @@ struct Tables {
     explicit Tables(const Object& root);
 };
 
-/// What a file may make of itself, geometry and texels together: kMaxExpansion times the bytes that were read, or
-/// LoadOptions::gltf_free_bytes if that is more. So that a small file cannot ask for any amount of memory by naming
-/// the same data over and over, or with pictures of one colour, which are large in files that are tiny.
+/// What a file may make of itself, geometry and texels together: kMaxExpansion times the bytes that accessors,
+/// compressed data and images take of it, or LoadOptions::gltf_free_bytes if that is more; what is made of no bytes at
+/// all never more than those. So that a small file cannot ask for any amount of memory by naming the same data over and
+/// over, by leaving them out, or with pictures of one colour, which are large in files that are tiny; nor a file that
+/// is padded.
 class Budget {
 public:
     static constexpr uint64_t kMaxExpansion = 256;
     explicit Budget(uint64_t free_bytes) : free_(free_bytes) {}
 
-    void grant(uint64_t file_bytes) noexcept { read_ += file_bytes; }
-    /// Fails at `offset` when there is no more. Call it before the memory is taken.
+    /// Bytes of the file that are in use; each counts once, however often this is said of it.
+    void grant(std::span<const std::byte> used);
+    /// These bytes were made, not read: grant() counts them for nothing.
+    void disown(std::span<const std::byte> made) { cover(made); }
+    /// A node, which takes some bytes of text, is placed: the rest of the text counts for nothing.
+    void grant_node() noexcept { read_ += kNodeBytes; }
+
+    /// Fails at `offset` when there is no more. Call them before the memory is taken.
     void take(uint64_t bytes, const Source& source, size_t offset);
+    /// For what stands in no file, such as the zeros of accessors without data.
+    void take_unread(uint64_t bytes, const Source& source, size_t offset);
 
 private:
-    uint64_t free_, read_ = 0, taken_ = 0;
+    static constexpr uint64_t kNodeBytes = 2;  ///< "{}"
+    uint64_t cover(std::span<const std::byte> bytes);
+    [[noreturn]] void refuse(uint64_t limit, const Source& source, size_t offset) const;
+
+    uint64_t free_, read_ = 0, taken_ = 0, unread_ = 0;
+    std::map<const std::byte*, const std::byte*> covered_;  ///< from begin to end; they do not touch
 };
 
 class Context {

@@ -224,6 +224,7 @@ const DracoMeshes::Decoded& DracoMeshes::open(const Object& extension) {
     if (text[kGeometry] != draco::TRIANGULAR_MESH) fail("the Draco data are a point cloud, expected a mesh");
     if (text[kMethod] != draco::MESH_EDGEBREAKER_ENCODING && text[kMethod] != draco::MESH_SEQUENTIAL_ENCODING)
         fail("the Draco data have an unknown kind of connectivity");
+    context_.budget.grant(bytes);
     // No exception passes through the library.
     std::optional<json::ReadFailure> refused;
     const Afford afford = [&](uint64_t wanted) {

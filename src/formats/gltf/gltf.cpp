@@ -31,7 +31,6 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     const Tables tables(root);
     Assets assets(loaded, folder, options);
     Context context(source, tables, options, loaded, assets);
-    context.budget.grant(bytes.size());
     check_extensions(context, root);
     if (!options.gltf_variant.empty()) context.variant = find_variant(context, options.gltf_variant);
     Buffers buffers(context, container.binary);

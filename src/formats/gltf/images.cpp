@@ -97,6 +97,12 @@ TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) 
 }
 
 Images::Image Images::open(uint32_t number) {
+    Image out = find(number);
+    context_.budget.grant(std::as_bytes(std::span(out.encoded)));
+    return out;
+}
+
+Images::Image Images::find(uint32_t number) {
     const Object object(context_.source, context_.tables.images.elements[number], "an image");
     Image out;
     out.offset = object.offset();

@@ -52,6 +52,7 @@ private:
     const ImageTexture& open_sampler(uint32_t number);
     ImageId plane_of(uint32_t image, Plane plane);
     Image open(uint32_t number);
+    Image find(uint32_t number);
     uint32_t image_of(const Object& texture, size_t offset);
     static Error cannot_decode(const Image& image, const Error& error);
     uint64_t claim(const Image& image);

@@ -109,6 +109,7 @@ private:
 
     void visit(const Step& step, std::vector<Step>& open) {
         const Object node(context_.source, context_.tables.nodes.elements[step.node], "a node");
+        context_.budget.grant_node();
         const Affine world_from_node = step.world_from_parent * node_transform(context_, node);
         if (!is_finite(world_from_node)) context_.source.fail(node.offset(), "the transform of this node overflows");
         const std::string name(node.string_or("name", ""));
