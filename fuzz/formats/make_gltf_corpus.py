@@ -265,14 +265,15 @@ def meshopt_file():
 
 
 def draco_file(level):
-    """A grid with texture coordinates; level 0 of the encoder is sequential, the others are edgebreaker."""
+    """A grid with normals and texture coordinates; level 0 of the encoder is sequential, the others are edgebreaker."""
     n = 4
     lines = [f"v {x} {y} {x * y % 3}" for y in range(n) for x in range(n)]
     lines += [f"vt {x / n} {y / n}" for y in range(n) for x in range(n)]
+    lines += [f"vn {(x - 1) / 3} {(y - 2) / 3} {(-1) ** x * 2 / 3}" for y in range(n) for x in range(n)]
     for y in range(n - 1):
         for x in range(n - 1):
             a = y * n + x + 1
-            lines += [f"f {i}/{i} {j}/{j} {k}/{k}" for i, j, k in ((a, a + 1, a + n), (a + 1, a + n + 1, a + n))]
+            lines += [f"f {i}/{i}/{i} {j}/{j}/{j} {k}/{k}/{k}" for i, j, k in ((a, a + 1, a + n), (a + 1, a + n + 1, a + n))]
     with tempfile.TemporaryDirectory() as folder:
         (pathlib.Path(folder) / "grid.obj").write_text("\n".join(lines) + "\n")
         subprocess.run(["draco_encoder", "-i", "grid.obj", "-o", "grid.drc", "-cl", str(level)], cwd=folder, check=True,
@@ -282,9 +283,10 @@ def draco_file(level):
              extensionsRequired=["KHR_draco_mesh_compression"])
     view = f.view(data)
     add = lambda kind, component, count: f.add("accessors", {"componentType": component, "type": kind, "count": count})
-    attributes = {"POSITION": add("VEC3", FLOAT, n * n), "TEXCOORD_0": add("VEC2", FLOAT, n * n)}
+    attributes = {"POSITION": add("VEC3", FLOAT, n * n), "TEXCOORD_0": add("VEC2", FLOAT, n * n),
+                  "NORMAL": add("VEC3", FLOAT, n * n)}
     f.mesh(attributes, indices=add("SCALAR", U16, 6 * (n - 1) ** 2), extensions={
-        "KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 0, "TEXCOORD_0": 1}}})
+        "KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2}}})
     return f.binary()
 
 

@@ -58,8 +58,7 @@ std::vector<uint32_t> from_smallest(std::vector<uint32_t> indices) {
     return indices;
 }
 
-std::string compressed_grid(const Grid& g, bool sequence, bool narrow) {
-    GltfBuilder b;
+std::string members_of_compressed_grid(GltfBuilder& b, const Grid& g, bool sequence, bool narrow) {
     const std::string indices =
         sequence ? encoded_sequence(g.indices, g.positions.size()) : encoded_triangles(g.indices, g.positions.size());
     const int p = b.compressed_view(encoded_vertices(g.positions), "ATTRIBUTES", g.positions.size(), 12);
@@ -70,8 +69,21 @@ std::string compressed_grid(const Grid& g, bool sequence, bool narrow) {
     const int corners =
         b.raw_accessor("\"bufferView\": " + std::to_string(i) + ", \"componentType\": " + (narrow ? "5123" : "5125") +
                        ", \"type\": \"SCALAR\", \"count\": " + std::to_string(g.indices.size()));
-    return b.binary(one_mesh(positions, ", \"indices\": " + std::to_string(corners)) +
-                    ", \"extensionsRequired\": [\"EXT_meshopt_compression\"]");
+    return one_mesh(positions, ", \"indices\": " + std::to_string(corners)) +
+           ", \"extensionsRequired\": [\"EXT_meshopt_compression\"]";
+}
+std::string compressed_grid(const Grid& g, bool sequence, bool narrow) {
+    GltfBuilder b;
+    const std::string members = members_of_compressed_grid(b, g, sequence, narrow);
+    return b.binary(members);
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to, size_t times) {
+    for (size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()), --times) {
+        ASSERT_GT(times, 0u) << from;
+        text.replace(at, from.size(), to);
+    }
+    ASSERT_EQ(times, 0u) << from;
 }
 
 TEST(GltfMeshopt, AttributesTrianglesAndIndices) {
@@ -90,11 +102,23 @@ TEST(GltfMeshopt, AttributesTrianglesAndIndices) {
 
 TEST(GltfMeshopt, ABufferForOthersNeedsNoData) {
     // As the extension writes it for readers that lack it: the views refer to a second buffer, which has no data.
-    std::string text = compressed_grid(grid(3), false, false);
-    const std::string first = "{\"buffer\": 0, \"byteLength\"", second = "{\"buffer\": 7, \"byteLength\"";
-    for (size_t at = text.find(first); at != text.npos; at = text.find(first, at))
-        text.replace(at, first.size(), second);
-    EXPECT_EQ(good_gltf(text).scene.meshes.at(0).positions.size(), 9u);
+    const Grid g = grid(3);
+    GltfBuilder b;
+    std::string text = b.text(members_of_compressed_grid(b, g, false, false));
+    replace_all(text, "{\"buffer\": 0, \"byteLength\"", "{\"buffer\": 1, \"byteLength\"", 2);
+    replace_all(text, "\"}],\n\"meshes\"",
+                "\"}, {\"byteLength\": 1000, \"extensions\": {\"EXT_meshopt_compression\": {\"fallback\": "
+                "true}}}],\n\"meshes\"",
+                1);
+    const LoadedScene loaded = good_gltf(text);
+    EXPECT_EQ(loaded.scene.meshes.at(0).positions, g.positions);
+    EXPECT_TRUE(loaded.diagnostics.empty());  // that the second buffer has no data
+    EXPECT_TRUE(loaded.fidelity.empty());
+    // Views that are not compressed do read it.
+    replace_all(text, "\"EXT_meshopt_compression\": {\"buffer\"", "\"X\": {\"buffer\"", 2);
+    const LoadedScene zeros = good_gltf(text);
+    EXPECT_TRUE(has(zeros.diagnostics, "a buffer has no data"));
+    EXPECT_EQ(zeros.scene.meshes.at(0).positions, std::vector<Vec3>(9, Vec3{0, 0, 0}));
 }
 
 void expect_fault(std::string from, std::string to, std::string_view pointer, std::string_view message) {

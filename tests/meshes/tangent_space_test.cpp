@@ -155,8 +155,8 @@ TEST(TangentSpace, CopiesOfVerticesKeepEverything) {
     EXPECT_TRUE(mesh.more_uvs[0].empty());
 }
 
-/// Hundreds of thousands of triangles around one vertex or at one edge: what takes time in their square never ends.
-TEST(TangentSpace, HostileMeshesEnd) {
+/// Hundreds of thousands of triangles around one vertex or at one edge, with a normal that is no number.
+TEST(TangentSpace, NoMeshIsSplitFurtherThanItsCorners) {
     constexpr uint32_t kMany = 200000;
     Mesh fan;  // every triangle by itself, each with a tangent of its own, at vertex 0
     fan.positions = {{0, 0, 0}};
