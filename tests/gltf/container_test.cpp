@@ -1,7 +1,9 @@
 // What a file is made of: binary files, URIs, JSON pointers in messages.
 #include "formats/gltf/container.h"
 
+#include <tuple>
 #include "formats/gltf/uri.h"
+
 #include "gltf_builder.h"
 
 namespace steradian {
@@ -101,10 +103,51 @@ TEST(GltfErrors, KeysInPointersAreEscaped) {
     EXPECT_EQ(document->pointer(0), "");
 }
 
+TEST(GltfErrors, InsideBinaryFilesBytesAreThoseOfTheFile) {
+    const auto binary = [](std::string json) {
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        const auto word = [](size_t value) {
+            const auto v = static_cast<uint32_t>(value);
+            return std::string(reinterpret_cast<const char*>(&v), 4);
+        };
+        return "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
+    };
+    const std::string mark = "\xef\xbb\xbf";
+    // What is wrong, and the character at which it is.
+    const std::tuple<std::string, char, size_t> faults[] = {
+        {"{\n\"asset\": {\"version\": \"2.0\"},\n\"nodes\": [{]}", ']', 0},
+        {"{\"asset\":\n{\"version\": \"1.0\"}}", '1', 1},
+        {std::string("{\"asset\": \0}", 12), '\0', 0},
+        {"{\"asset\": {\"version\": \"2.0\"}, \"asset\": 7}", '7', 9}};
+    for (const auto& [json, at, before] : faults)
+        for (const std::string& begin : {std::string(), mark}) {
+            const std::string file = binary(begin + json);
+            const auto loaded = load_gltf(file);
+            ASSERT_FALSE(loaded.ok()) << json;
+            const SourceLocation& where = loaded.error().where;
+            EXPECT_EQ(where.line, 0u) << loaded.error().str();
+            ASSERT_TRUE(where.byte) << loaded.error().str();
+            EXPECT_EQ(*where.byte, file.find(at, 20) - before) << loaded.error().str();
+        }
+}
+
 TEST(GltfErrors, AssetAndExtensions) {
     expect_refused("{}", "", "missing key 'asset'");
     expect_refused("{\"asset\": {\"version\": \"1.0\"}}", "/asset/version", "glTF 1.0");
     expect_refused("{\"asset\": {\"version\": \"2.0\", \"minVersion\": \"2.1\"}}", "/asset/minVersion", "beyond");
+    const auto asset = [](const std::string& version, const std::string& needed) {
+        return "{\"asset\": {\"version\": \"" + version + "\"" +
+               (needed.empty() ? "" : ", \"minVersion\": \"" + needed + "\"") + "}}";
+    };
+    for (const auto& [version, needed] :
+         {std::pair("2.0", ""), {"2.1", ""}, {"2.10", "2.0"}, {"3.1", "2.0"}, {"2.0", "1.0"}})
+        EXPECT_TRUE(load_gltf(asset(version, needed)).ok()) << version << " " << needed;
+    expect_refused(asset("3.0", ""), "/asset/version", "glTF 3.0");
+    expect_refused(asset("2.1", "2.1"), "/asset/minVersion", "takes glTF 2.1");
+    expect_refused(asset("2.10", "2.9"), "/asset/minVersion", "takes glTF 2.9");  // 9 is before 10
+    expect_refused(asset("2.9", "2.10"), "/asset/minVersion", "beyond");
+    for (const char* bad : {"2", "2.", ".0", "2.0.0", "2.x", " 2.0", "+2.0", "-2.0", "2,0", "2e0.0", ""})
+        expect_refused(asset(bad, ""), "/asset/version", "two numbers");
     expect_refused("{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"KHR_texture_basisu\"]}",
                    "/extensionsRequired/0", "'KHR_texture_basisu'");
     const LoadedScene loaded = good_gltf(

@@ -91,7 +91,9 @@ TEST(GltfSuite, Validator) {
         const auto loaded = load_scene(path);
         if (loaded.ok()) continue;
         ++refused;
-        EXPECT_EQ(report.find("\"numErrors\": 0"), std::string::npos) << loaded.error().str();
+        // What needs a newer glTF has no errors, and is not for us.
+        const bool newer = loaded.error().where.pointer == "/asset/minVersion";
+        EXPECT_TRUE(report.find("\"numErrors\": 0") == std::string::npos || newer) << loaded.error().str();
         EXPECT_FALSE(loaded.error().where.file.empty()) << path;
         EXPECT_FALSE(loaded.error().message.empty()) << path;
     }

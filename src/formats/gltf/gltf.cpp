@@ -21,8 +21,12 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     LoadOptions options = given;
     if (!options.allow_outside_paths) options.allow_outside_paths = false;
     const Container container = value_or_throw(open_container(bytes, name, loaded.diagnostics));
-    const auto document = value_or_throw(json::Document::parse(container.json, name, options.max_depth));
-    const Source source(document, name, container.json_begin);
+    const auto document =
+        value_or_throw(json::Document::parse(container.json, name, options.max_depth, container.json_begin));
+    // Offsets count from behind a byte order mark.
+    std::optional<uint64_t> begin = container.json_begin;
+    if (begin) *begin += static_cast<uint64_t>(document.text().data() - container.json.data());
+    const Source source(document, name, begin);
     if (const auto duplicate = document.duplicate_key())
         source.fail(duplicate->second_offset, "the key " + quoted(duplicate->key) + " stands here for the second time",
                     "the first one is at " + source.where(duplicate->first_offset).str());

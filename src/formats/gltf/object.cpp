@@ -1,5 +1,8 @@
 #include "formats/gltf/object.h"
 
+#include <charconv>
+#include <compare>
+
 #include "base/text.h"
 
 namespace steradian::gltf {
@@ -122,26 +125,48 @@ uint32_t Object::require_reference(std::string_view key, const Table& table) con
     return read_reference(*source_, require(key), key, table);
 }
 
+namespace {
+
+/// "2.0": two whole numbers, compared one after the other.
+struct Version {
+    uint32_t major = 0, minor = 0;
+    auto operator<=>(const Version&) const = default;
+};
+constexpr Version kOurs{2, 0};
+
+Version read_version(const Object& asset, std::string_view key) {
+    const std::string_view text = json::read_string(asset.source(), asset.require(key), quoted(key));
+    const char* const end = text.data() + text.size();
+    Version out;
+    const auto major = std::from_chars(text.data(), end, out.major);
+    if (major.ec == std::errc() && major.ptr != end && *major.ptr == '.') {
+        const auto minor = std::from_chars(major.ptr + 1, end, out.minor);
+        if (minor.ec == std::errc() && minor.ptr == end) return out;
+    }
+    asset.source().fail(asset.offset_of(key), quoted(key) + " is \"" + escape_for_display(text, 40) +
+                                                  "\", expected two numbers such as \"2.0\"");
+}
+
+}  // namespace
+
+/// Section 3.2 of the specification: what a file says is needed to read it decides, and where it does not say, the
+/// major number of its version. Files of a newer 2.x are read as far as they are known.
 void check_asset(const Object& root) {
     const Object asset(root.source(), root.require("asset"), "'asset'");
-    asset.require("version");
-    const std::string_view version = asset.string_or("version", "");
-    const auto number = [&](std::string_view key) {
-        const std::string_view text = asset.string_or(key, "2.0");
-        const size_t dot = text.find('.');
-        const auto value = parse_double(text);
-        if (!value || dot == text.npos || dot == 0 || dot + 1 == text.size())
-            asset.source().fail(asset.offset_of(key), quoted(key) + " is \"" + escape_for_display(text, 40) +
-                                                          "\", expected two numbers such as \"2.0\"");
-        return *value;
+    const auto refuse = [&](std::string_view key, const std::string& message, const std::string& hint = {}) {
+        asset.source().fail(asset.offset_of(key), message, hint);
     };
-    // Files of a newer 2.x are read as far as they are known.
-    if (const double v = number("version"); !(v >= 2 && v < 3))
-        asset.source().fail(asset.offset_of("version"),
-                            "this is glTF " + escape_for_display(version, 40) + ", expected 2.0",
-                            "older files can be converted with gltf-pipeline");
-    if (number("minVersion") > number("version"))
-        asset.source().fail(asset.offset_of("minVersion"), "'minVersion' is beyond 'version'");
+    const auto text = [&](std::string_view key) { return escape_for_display(asset.string_or(key, ""), 40); };
+    const Version version = read_version(asset, "version");
+    if (asset.has("minVersion")) {
+        const Version needed = read_version(asset, "minVersion");
+        if (needed > version) refuse("minVersion", "'minVersion' is beyond 'version'");
+        if (needed > kOurs) refuse("minVersion", "to read this takes glTF " + text("minVersion") + ", expected 2.0");
+        if (needed.major == kOurs.major) return;
+    }
+    if (version.major != kOurs.major)
+        refuse("version", "this is glTF " + text("version") + ", expected 2.0",
+               version < kOurs ? "older files can be converted with gltf-pipeline" : "");
 }
 
 }  // namespace steradian::gltf

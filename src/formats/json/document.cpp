@@ -191,18 +191,34 @@ private:
     std::optional<Failure> failure_;
 };
 
-Result<Document> Document::parse(std::string_view text, const std::string& name, uint32_t max_depth) {
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+Result<Document> Document::parse(std::string_view text, const std::string& name, uint32_t max_depth,
+                                 std::optional<uint64_t> begin) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text.starts_with(kByteOrderMark)) {
+        text.remove_prefix(kByteOrderMark.size());
+        if (begin) *begin += kByteOrderMark.size();
+    }
+    const auto placed = [&](Error error, size_t offset) {
+        if (begin) error.where = {name, 0, 0, *begin + offset, {}};
+        return error;
+    };
+    const auto fail = [&](size_t offset, std::string message, std::string hint = {},
+                          ErrorCode code = ErrorCode::bad_input) {
+        return placed(error_at(text, name, offset, std::move(message), std::move(hint), code), offset);
+    };
     if (text.size() > kMaxTextBytes)
-        return whole_text_error(name, ErrorCode::resources,
-                                "the JSON text has more than the limit of " + std::to_string(kMaxTextBytes) + " bytes",
-                                "put large meshes into OBJ or PLY files");
+        return placed(
+            whole_text_error(name, ErrorCode::resources,
+                             "the JSON text has more than the limit of " + std::to_string(kMaxTextBytes) + " bytes",
+                             "put large meshes into OBJ or PLY files"),
+            0);
     if (const char* encoding = foreign_encoding(text))
-        return whole_text_error(name, ErrorCode::bad_input,
-                                std::string("the file is encoded in ") + encoding + ", expected UTF-8",
-                                "save it as UTF-8");
+        return placed(whole_text_error(name, ErrorCode::bad_input,
+                                       std::string("the file is encoded in ") + encoding + ", expected UTF-8",
+                                       "save it as UTF-8"),
+                      0);
     if (const size_t nul = text.find('\0'); nul != text.npos)
-        return error_at(text, name, nul, "the file contains a NUL byte, expected text");
+        return fail(nul, "the file contains a NUL byte, expected text");
 
     Document document;
     document.text_ = text;
@@ -213,11 +229,10 @@ Result<Document> Document::parse(std::string_view text, const std::string& name,
     constexpr unsigned kFlags =
         rapidjson::kParseIterativeFlag | rapidjson::kParseValidateEncodingFlag | rapidjson::kParseNumbersAsStringsFlag;
     const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
-    if (const auto& failure = builder.failure())
-        return error_at(text, name, failure->offset, failure->message, {}, failure->code);
+    if (const auto& failure = builder.failure()) return fail(failure->offset, failure->message, {}, failure->code);
     if (result.IsError()) {
         const size_t at = std::min(result.Offset(), text.size());
-        return error_at(text, name, at, syntax_message(result.Code()), syntax_hint(result.Code(), text.substr(at)));
+        return fail(at, syntax_message(result.Code()), syntax_hint(result.Code(), text.substr(at)));
     }
     return document;
 }

@@ -108,8 +108,10 @@ class Document {
 public:
     /// Refuses, with a place: anything that is not JSON in UTF-8 (a byte order mark is skipped), NUL bytes, numbers
     /// beyond double's range, nesting deeper than max_depth, text over kMaxTextBytes. `text` must outlive the document;
-    /// `name` stands for the file in errors.
-    static Result<Document> parse(std::string_view text, const std::string& name, uint32_t max_depth);
+    /// `name` stands for the file in errors. `begin`: where in the file the text lies, if that is a binary one: places
+    /// are then bytes of it.
+    static Result<Document> parse(std::string_view text, const std::string& name, uint32_t max_depth,
+                                  std::optional<uint64_t> begin = std::nullopt);
 
     Value root() const noexcept { return Value(*this, 0); }
     /// What was parsed, without a byte order mark: offsets count from its start.
