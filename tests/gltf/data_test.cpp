@@ -127,6 +127,25 @@ TEST(GltfMesh, AttributesMustFitTogether) {
                    "/meshes/0/primitives/0/attributes/NORMAL", "2 elements");
 }
 
+TEST(GltfMesh, MatricesAreNoVectors) {
+    GltfBuilder b;
+    const int p = b.floats("VEC3", 3, kTriangle), n = b.floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    // Of four components each: MAT2 of bytes has columns of two, each on four bytes.
+    const int floats = b.floats("MAT2", 4, std::vector<float>(12, 0.5f));
+    const int bytes = b.accessor<uint8_t>("MAT2", 5121, 8, std::vector<uint8_t>(24, 255), ", \"normalized\": true");
+    const auto file = [&](const std::string& attribute, int accessor) {
+        return b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
+                      ", \"NORMAL\": " + std::to_string(n) + ", \"" + attribute + "\": " + std::to_string(accessor) +
+                      "}, \"material\": 0}]}], \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, "
+                      "\"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}}], "
+                      "\"nodes\": [{\"mesh\": 0}]");
+    };
+    for (const int matrices : {floats, bytes}) {
+        expect_refused(file("COLOR_0", matrices), "/meshes/0/primitives/0/attributes/COLOR_0", "vectors of 3 or 4");
+        expect_refused(file("TANGENT", matrices), "/meshes/0/primitives/0/attributes/TANGENT", "vectors of 4");
+    }
+}
+
 TEST(GltfMesh, NodesAndPrimitivesShareWhatTheyUse) {
     GltfBuilder b;
     const int p = b.floats("VEC3", 3, kTriangle);

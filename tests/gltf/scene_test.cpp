@@ -72,6 +72,61 @@ TEST(GltfNode, InstancesOfGpuInstancing) {
     expect_near(transform_point(loaded.scene.instances[1].world_from_object, Vec3{1, 1, 1}), {1, 3, 10});
 }
 
+/// Two instances of a triangle; `attributes` is of the extension.
+std::string with_instances(GltfBuilder& b, const std::string& attributes) {
+    const std::string p = std::to_string(b.floats("VEC3", 3, kTriangle));
+    return b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + p +
+                  "}}]}], \"nodes\": [{\"mesh\": 0, \"extensions\": {\"EXT_mesh_gpu_instancing\": {\"attributes\": {" +
+                  attributes + "}}}}]");
+}
+
+TEST(GltfNode, RotationsOfInstancesAreFloatsOrNormalisedIntegers) {
+    // A quarter turn about +z, and about +x: (0, 0, 1, 1) and (1, 0, 0, 1) over the root of 2.
+    const auto check = [](GltfBuilder& b, int accessor, double tolerance) {
+        const LoadedScene loaded = good_gltf(with_instances(b, "\"ROTATION\": " + std::to_string(accessor)));
+        EXPECT_TRUE(loaded.diagnostics.empty());  // they are of unit length
+        ASSERT_EQ(loaded.scene.instances.size(), 2u);
+        const Vec3d a = transform_point(loaded.scene.instances[0].world_from_object, Vec3{1, 2, 3}),
+                    b2 = transform_point(loaded.scene.instances[1].world_from_object, Vec3{1, 2, 3});
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_NEAR(a[i], (Vec3d{-2, 1, 3})[i], tolerance);
+            EXPECT_NEAR(b2[i], (Vec3d{1, -3, 2})[i], tolerance);
+        }
+    };
+    GltfBuilder floats, bytes, shorts, whole, unsigned_bytes;
+    const float h = 0.70710678f;
+    check(floats, floats.floats("VEC4", 4, {0, 0, h, h, h, 0, 0, h}), 1e-6);
+    constexpr std::string_view kNormalized = ", \"normalized\": true";
+    check(bytes, bytes.accessor<int8_t>("VEC4", 5120, 4, {0, 0, 90, 90, 90, 0, 0, 90}, kNormalized), 1e-6);
+    check(shorts, shorts.accessor<int16_t>("VEC4", 5122, 4, {0, 0, 23170, 23170, 23170, 0, 0, 23170}, kNormalized),
+          1e-6);
+    const std::string pointer = "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION";
+    const int w = whole.accessor<int16_t>("VEC4", 5122, 4, {0, 0, 1, 0, 1, 0, 0, 0});
+    expect_refused(with_instances(whole, "\"ROTATION\": " + std::to_string(w)), pointer, "normalised BYTE or SHORT");
+    const int u = unsigned_bytes.accessor<uint8_t>("VEC4", 5121, 4, {0, 0, 255, 0, 255, 0, 0, 0}, kNormalized);
+    expect_refused(with_instances(unsigned_bytes, "\"ROTATION\": " + std::to_string(u)), pointer, "normalised BYTE");
+}
+
+TEST(GltfNode, AttributesOfInstancesMayBeSparse) {
+    GltfBuilder b;
+    const auto sparse = [&](const std::string& kind, uint8_t element, const std::vector<float>& values) {
+        const std::string index = std::to_string(b.view(std::string(1, static_cast<char>(element)))),
+                          at =
+                              std::to_string(b.view({reinterpret_cast<const char*>(values.data()), 4 * values.size()}));
+        return std::to_string(b.raw_accessor("\"componentType\": 5126, \"type\": \"" + kind +
+                                             "\", \"count\": 2, \"sparse\": {\"count\": 1, \"indices\": "
+                                             "{\"bufferView\": " +
+                                             index + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + at +
+                                             "}}"));
+    };
+    const std::string t = sparse("VEC3", 1, {10, 20, 30});
+    const std::string s = std::to_string(b.floats("VEC3", 3, {2, 2, 2, 3, 3, 3}));
+    const LoadedScene loaded = good_gltf(with_instances(b, "\"TRANSLATION\": " + t + ", \"SCALE\": " + s));
+    EXPECT_TRUE(loaded.fidelity.empty());
+    expect_near(transform_point(loaded.scene.instances.at(0).world_from_object, Vec3{1, 1, 1}), {2, 2, 2});
+    expect_near(transform_point(loaded.scene.instances.at(1).world_from_object, Vec3{1, 1, 1}), {13, 23, 33});
+}
+
 TEST(GltfCamera, LooksAlongMinusZAndShapesThePicture) {
     const LoadedScene loaded = good_gltf(with_node("{\"camera\": 0, \"translation\": [1, 2, 3]}",
                                                    "\"materials\": [{}], \"cameras\": [{\"type\": \"perspective\", "

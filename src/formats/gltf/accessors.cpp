@@ -177,6 +177,7 @@ Accessor Accessors::check(uint32_t number) {
     out.component = read_component_type(object);
     out.normalized = object.boolean_or("normalized", false);
     out.components = shape.components;
+    out.is_matrix = shape.columns > 1;
     out.count = json::read_integer(context_.source, object.require("count"), "'count'", 1, kMaxCount);
     if (out.normalized && out.component == ComponentType::f32) {
         context_.warn("an accessor with floats is marked as normalized, which has no effect",
@@ -244,6 +245,10 @@ std::vector<Rgb> Accessors::read_rgb(const Accessor& accessor) {
 
 std::vector<float> Accessors::read_component(const Accessor& accessor, uint32_t component) {
     return read<float>(accessor, [component](auto c) { return c(component); });
+}
+
+std::vector<std::array<float, 4>> Accessors::read_vec4(const Accessor& accessor) {
+    return read<std::array<float, 4>>(accessor, [](auto c) { return std::array<float, 4>{c(0), c(1), c(2), c(3)}; });
 }
 
 std::vector<Tangent> Accessors::read_tangents(const Accessor& accessor) {

@@ -1,6 +1,7 @@
 // Accessors: typed arrays in buffer views.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -22,6 +23,7 @@ struct Accessor {
     ComponentType component = ComponentType::f32;
     bool normalized = false;  ///< integers stand for [0, 1] or [-1, 1]
     uint32_t components = 1;  ///< of one element
+    bool is_matrix = false;
     uint64_t count = 0;
     const std::byte* data = nullptr;  ///< null: all elements are zero
     uint64_t stride = 0;
@@ -32,6 +34,8 @@ struct Accessor {
         const std::byte* values = nullptr;
     } sparse = {};
 
+    /// Scalars are vectors of one.
+    bool has_vectors_of(uint32_t n) const noexcept { return components == n && !is_matrix; }
     /// Component c of element i as a float; `sparse` is not looked at.
     float number(uint64_t i, uint32_t c) const noexcept;
 };
@@ -55,6 +59,7 @@ public:
     std::vector<Rgb> read_rgb(const Accessor& accessor);
     /// Component c of each element.
     std::vector<float> read_component(const Accessor& accessor, uint32_t c);
+    std::vector<std::array<float, 4>> read_vec4(const Accessor& accessor);
     std::vector<Tangent> read_tangents(const Accessor& accessor);
     /// Whole numbers that are not negative; fails for other types.
     std::vector<uint32_t> read_indices(const Accessor& accessor);

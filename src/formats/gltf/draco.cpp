@@ -262,7 +262,7 @@ void Accessors::decompress(const Object& primitive) {
         if (accessor.count != count)
             context_.source.fail(accessor.offset, "the accessor has " + std::to_string(accessor.count) +
                                                       " elements, its Draco data " + std::to_string(count));
-        if (accessor.components > kMaxComponents)
+        if (accessor.is_matrix)
             context_.source.fail(accessor.offset, "Draco data are scalars and vectors, not matrices");
         const uint64_t size = accessor.components * size_of(accessor.component);
         context_.budget.take(count * size, context_.source, accessor.offset);

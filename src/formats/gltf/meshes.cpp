@@ -33,7 +33,7 @@ std::vector<uint32_t> as_triangles(std::vector<uint32_t> corners, uint32_t mode)
 
 Accessor Meshes::open_attribute(const Object& primitive, std::string_view name, uint32_t number, uint32_t components) {
     const Accessor accessor = accessors_.open(number);
-    if (accessor.components != components || accessor.component == ComponentType::u32) {
+    if (!accessor.has_vectors_of(components) || accessor.component == ComponentType::u32) {
         const Object attributes(context_.source, primitive.require("attributes"), "'attributes'");
         context_.source.fail(attributes.offset_of(name), quoted(name) + " must be vectors of " +
                                                              std::to_string(components) +
@@ -169,7 +169,7 @@ VertexColors Meshes::colors_of(const Object& primitive) {
     if (!number) return VertexColors::none;
     const Accessor colors = accessors_.open(*number);
     const bool whole = colors.component == ComponentType::u8 || colors.component == ComponentType::u16;
-    if ((colors.components != 3 && colors.components != 4) ||
+    if ((!colors.has_vectors_of(3) && !colors.has_vectors_of(4)) ||
         !(colors.component == ComponentType::f32 || (whole && colors.normalized)))
         context_.source.fail(attributes->offset_of("COLOR_0"),
                              "'COLOR_0' must be vectors of 3 or 4 floats, or of normalised UNSIGNED_BYTE or "

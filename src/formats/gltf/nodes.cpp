@@ -225,11 +225,12 @@ std::vector<Affine> read_instances(Context& context, Accessors& accessors, const
         const auto number = attributes.reference(key, context.tables.accessors);
         if (!number) return std::nullopt;
         const Accessor accessor = accessors.open(*number);
-        if (accessor.components != components)
+        const bool fraction = components == 4 && accessor.normalized &&
+                              (accessor.component == ComponentType::i8 || accessor.component == ComponentType::i16);
+        if (!accessor.has_vectors_of(components) || !(accessor.component == ComponentType::f32 || fraction))
             context.source.fail(attributes.offset_of(key),
-                                quoted(key) + " must be vectors of " + std::to_string(components));
-        if (accessor.sparse.count)
-            context.not_honoured("sparse attributes of instances are read as zeros", accessor.offset);
+                                quoted(key) + " must be vectors of " + std::to_string(components) + " floats" +
+                                    (components == 4 ? ", or of normalised BYTE or SHORT" : ""));
         if (count.value_or(accessor.count) != accessor.count)
             context.source.fail(attributes.offset_of(key), quoted(key) + " has " + std::to_string(accessor.count) +
                                                                " elements, the attributes before it have " +
@@ -239,20 +240,22 @@ std::vector<Affine> read_instances(Context& context, Accessors& accessors, const
     };
     const auto translations = open("TRANSLATION", 3), rotations = open("ROTATION", 4), scales = open("SCALE", 3);
     context.budget.take(count.value_or(0) * sizeof(Affine), context.source, extension.offset());
-    std::vector<Affine> out;
-    for (uint64_t i = 0; i < count.value_or(0); ++i) {
-        const auto part = [&](const std::optional<Accessor>& from, uint32_t c) {
-            return static_cast<double>(from->number(i, c));
-        };
-        Affine transform;
-        if (rotations)
-            transform =
-                rotation(context, {part(rotations, 0), part(rotations, 1), part(rotations, 2), part(rotations, 3)},
-                         rotations->offset);
-        if (scales) transform = transform * scaling(part(scales, 0), part(scales, 1), part(scales, 2));
-        if (translations)
-            for (uint32_t row = 0; row < 3; ++row) transform.m[row][3] = part(translations, row);
-        out.push_back(transform);
+    std::vector<Affine> out(count.value_or(0));
+    if (rotations) {
+        const auto q = accessors.read_vec4(*rotations);
+        for (size_t i = 0; i < out.size(); ++i)
+            out[i] = rotation(context, {double(q[i][0]), double(q[i][1]), double(q[i][2]), double(q[i][3])},
+                              rotations->offset);
+    }
+    if (scales) {
+        const std::vector<Vec3> s = accessors.read_vec3(*scales);
+        for (size_t i = 0; i < out.size(); ++i)
+            out[i] = out[i] * scaling(double(s[i].x), double(s[i].y), double(s[i].z));
+    }
+    if (translations) {
+        const std::vector<Vec3> t = accessors.read_vec3(*translations);
+        for (size_t i = 0; i < out.size(); ++i)
+            for (int row = 0; row < 3; ++row) out[i].m[static_cast<size_t>(row)][3] = static_cast<double>(t[i][row]);
     }
     return out;
 }
