@@ -196,6 +196,66 @@ TEST(GltfMaterial, FactorsAndAlpha) {
     EXPECT_EQ(mask.geometry_opacity.value, 0.4f);
 }
 
+TEST(GltfMaterial, UnlitOnesAreThereAsFarAsTheirAlphaSays) {
+    const std::string unlit =
+        "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0.1, 0.2, 0.3, 0.4]}, \"extensions\": "
+        "{\"KHR_materials_unlit\": {}}";
+    const LoadedScene opaque = with_material(unlit), blended = with_material(unlit + ", \"alphaMode\": \"BLEND\""),
+                      masked = with_material(unlit + ", \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.3");
+    for (const LoadedScene* loaded : {&opaque, &blended, &masked})
+        EXPECT_EQ(std::get<AreaLight>(loaded->scene.lights.at(0)).radiance, (Rgb{0.1f, 0.2f, 0.3f}));
+    (void)material_of<DiffuseMaterial>(opaque);
+    const auto blend = material_of<OpenPbrMaterial>(blended), mask = material_of<OpenPbrMaterial>(masked);
+    EXPECT_EQ(blend.geometry_opacity.value, 0.4f);
+    EXPECT_EQ(blend.geometry_opacity_cutoff, 0);
+    EXPECT_EQ(mask.geometry_opacity.value, 0.4f);
+    EXPECT_EQ(mask.geometry_opacity_cutoff, 0.3f);
+    for (const OpenPbrMaterial& m : {blend, mask}) {
+        EXPECT_EQ(m.base_color.value, (Rgb{0, 0, 0}));
+        EXPECT_EQ(m.base_metalness.value, 0);
+        EXPECT_EQ(m.specular_weight, 0);
+    }
+}
+
+TEST(GltfMaterial, ColourFactorsOutsideTheirRangeAreClamped) {
+    const auto loaded = [](const std::string& material, std::string_view key) {
+        LoadedScene out = with_material(material);
+        EXPECT_TRUE(has(out.diagnostics, "'" + std::string(key) + "' of a material must")) << key;
+        return out;
+    };
+    const auto base = material_of<OpenPbrMaterial>(
+        loaded("\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [-0.1, 2, 0.5, -3]}",
+               "baseColorFactor"));
+    EXPECT_EQ(base.base_color.value, (Rgb{0, 1, 0.5f}));
+    EXPECT_EQ(base.geometry_opacity.value, 0);
+    const LoadedScene shines = loaded("\"emissiveFactor\": [2, -1, 0.5]", "emissiveFactor");
+    EXPECT_EQ(std::get<AreaLight>(shines.scene.lights.at(0)).radiance, (Rgb{1, 0, 0.5f}));
+    const auto extension = [&](const std::string& name, const std::string& members) {
+        return "\"pbrMetallicRoughness\": {\"metallicFactor\": 0}, \"extensions\": {\"" + name + "\": {" + members +
+               "}}";
+    };
+    const auto sheen = material_of<OpenPbrMaterial>(
+        loaded(extension("KHR_materials_sheen", "\"sheenColorFactor\": [1.5, -1, 0.5]"), "sheenColorFactor"));
+    EXPECT_EQ(sheen.fuzz_weight.value, 1);
+    EXPECT_EQ(sheen.fuzz_color.value, (Rgb{1, 0, 0.5f}));
+    const auto specular = material_of<OpenPbrMaterial>(
+        loaded(extension("KHR_materials_specular", "\"specularColorFactor\": [2, -1, 1]"), "specularColorFactor"));
+    EXPECT_EQ(specular.specular_color, (Rgb{1, 0, 0.5f}));
+    EXPECT_EQ(specular.specular_weight, 2);
+    const LoadedScene thin =
+        loaded(extension("KHR_materials_diffuse_transmission",
+                         "\"diffuseTransmissionFactor\": 1, \"diffuseTransmissionColorFactor\": [0.5, 7, -7]"),
+               "diffuseTransmissionColorFactor");
+    const auto transmits = material_of<DiffuseTransmissionMaterial>(thin);
+    EXPECT_EQ(std::get<ConstantTexture>(thin.scene.textures[index(transmits.transmittance)]).value, (Rgb{0.5f, 1, 0}));
+    const auto absorbs = material_of<OpenPbrMaterial>(loaded(
+        "\"pbrMetallicRoughness\": {\"metallicFactor\": 0}, \"extensions\": {\"KHR_materials_transmission\": "
+        "{\"transmissionFactor\": 1}, \"KHR_materials_volume\": {\"thicknessFactor\": 2, \"attenuationDistance\": 1, "
+        "\"attenuationColor\": [1.5, 0.25, -1]}}",
+        "attenuationColor"));
+    EXPECT_EQ(absorbs.transmission_color.value, (Rgb{1, 0.25f, 0}));
+}
+
 TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
     const std::string start = "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0, \"metallicFactor\": ";
     EXPECT_EQ(material_of<ConductorMaterial>(with_material(start + "1}")).roughness.value, (Vec2{0, 0}));

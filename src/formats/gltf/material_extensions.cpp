@@ -38,7 +38,7 @@ void Materials::read_transmission(const Object& material, Reading& r) {
     no_texture(*volume, "thicknessTexture");
     if (!volume->has("attenuationDistance")) return;
     const double distance = volume->number_or("attenuationDistance", 1, {0, 1e30, true});
-    const Rgb color = volume->color_or("attenuationColor", {1, 1, 1}, {0, 1});
+    const Rgb color = this->color(*volume, "attenuationColor", {1, 1, 1});
     if (color == Rgb{1, 1, 1}) return;
     context_.not_honoured("the absorption of volumes is put into their surfaces: thin and thick parts look alike",
                           volume->offset());
@@ -65,7 +65,7 @@ void Materials::read_specular(const Object& material, Reading& r) {
     if (!specular) return;
     no_texture(*specular, "specularTexture");
     no_texture(*specular, "specularColorTexture");
-    Rgb color = specular->color_or("specularColorFactor", {1, 1, 1}, kNotNegative);
+    Rgb color = this->color(*specular, "specularColorFactor", {1, 1, 1}, kNotNegative.max);
     const double most = max_component(color);
     const double weight = static_cast<double>(unit(*specular, "specularFactor", 1)) * most;
     if (most > 0 && s.base_metalness.value < 1) s.specular_color = color * static_cast<float>(1 / most);
@@ -89,7 +89,7 @@ void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
 
 /// As fuzz, whose model is another one: near, not the same.
 void Materials::read_sheen(const Object& sheen, Reading& r) {
-    const Rgb color = sheen.color_or("sheenColorFactor", {0, 0, 0}, {0, 1});
+    const Rgb color = this->color(sheen, "sheenColorFactor", {0, 0, 0});
     const float most = max_component(color);
     if (most == 0) return;
     OpenPbrMaterial& s = r.surface;
@@ -128,7 +128,7 @@ void Materials::read_diffuse_transmission(const Object& extension, Reading& r) {
         return;
     }
     r.diffuse_transmission = factor;
-    r.diffuse_transmission_color = extension.color_or("diffuseTransmissionColorFactor", {1, 1, 1}, {0, 1});
+    r.diffuse_transmission_color = color(extension, "diffuseTransmissionColorFactor", {1, 1, 1});
     context_.not_honoured("materials with diffuse transmission have no gloss", extension.offset());
 }
 

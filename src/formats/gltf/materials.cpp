@@ -8,18 +8,31 @@ namespace steradian::gltf {
 
 namespace {
 
-constexpr Range kNotNegative{0, 1e30};
+constexpr Range kNotNegative{0, 1e30}, kAnyNumber{-1e30, 1e30};
 
 bool is_white(Rgb c) { return c.r == 1 && c.g == 1 && c.b == 1; }
 
 }  // namespace
 
-/// A number in [0, 1]; what lies outside is clamped, with a warning.
+/// A factor in [0, `most`], which is 1 or as good as no limit; what lies outside is clamped, with a warning.
+float Materials::factor(double x, const Object& object, std::string_view key, double most) {
+    if (!(x >= 0 && x <= most))
+        context_.warn(quoted(key) + " of a material must " + (most > 1 ? "not be negative" : "be between 0 and 1") +
+                          " and was clamped",
+                      object.offset_of(key));
+    return static_cast<float>(clamp_to(x, 0.0, most));
+}
+
 float Materials::unit(const Object& object, std::string_view key, float fallback) {
-    const double x = object.number_or(key, static_cast<double>(fallback), {-1e30, 1e30});
-    if (!(x >= 0 && x <= 1))
-        context_.warn(quoted(key) + " of a material must be between 0 and 1 and was clamped", object.offset_of(key));
-    return static_cast<float>(clamp_to(x, 0.0, 1.0));
+    return factor(object.number_or(key, static_cast<double>(fallback), kAnyNumber), object, key);
+}
+
+Rgb Materials::color(const Object& object, std::string_view key, Rgb fallback, double most) {
+    const auto numbers = object.numbers(key, 3, kAnyNumber);
+    if (!numbers) return fallback;
+    Rgb out;
+    for (int c = 0; c < 3; ++c) out[c] = factor((*numbers)[static_cast<size_t>(c)], object, key, most);
+    return out;
 }
 
 void Materials::no_texture(const Object& object, std::string_view key) {
@@ -50,15 +63,10 @@ void Materials::read_metallic_roughness(const Object& material, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     const auto pbr = material.object("pbrMetallicRoughness");
     if (!pbr) return;
-    if (const auto factor = pbr->numbers("baseColorFactor", 4, kNotNegative)) {
-        for (int c = 0; c < 3; ++c) {
-            const double x = (*factor)[static_cast<size_t>(c)];
-            if (x > 1)
-                context_.warn("'baseColorFactor' must be between 0 and 1 and was clamped",
-                              pbr->offset_of("baseColorFactor"));
-            s.base_color.value[c] = static_cast<float>(min_of(x, 1.0));
-        }
-        s.geometry_opacity.value = static_cast<float>(min_of((*factor)[3], 1.0));
+    constexpr std::string_view kColor = "baseColorFactor";
+    if (const auto numbers = pbr->numbers(kColor, 4, kAnyNumber)) {
+        for (int c = 0; c < 3; ++c) s.base_color.value[c] = factor((*numbers)[static_cast<size_t>(c)], *pbr, kColor);
+        s.geometry_opacity.value = factor((*numbers)[3], *pbr, kColor);
     }
     r.base_color = images_.use(*pbr, "baseColorTexture");
     s.base_color.texture = texture(*pbr, "baseColorTexture", Plane::color, r);
@@ -89,7 +97,7 @@ void Materials::read_alpha(const Object& material, Reading& r) {
 }
 
 void Materials::read_emission(const Object& material, Reading& r) {
-    r.emission = material.color_or("emissiveFactor", {0, 0, 0}, kNotNegative);
+    r.emission = color(material, "emissiveFactor", {0, 0, 0});
     if (const auto strength = material.extension("KHR_materials_emissive_strength"))
         r.emission = r.emission * static_cast<float>(strength->number_or("emissiveStrength", 1, kNotNegative));
     if (is_black(r.emission)) return;
@@ -134,8 +142,20 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
     return std::nullopt;
 }
 
+/// It reflects nothing, and is there as far as its alpha says: what is not there does not shine either.
+MaterialId Materials::make_unlit(const Reading& r, const std::string& name) {
+    const FloatInput& opacity = r.surface.geometry_opacity;
+    if (opacity.value == 1 && !opacity.texture) return context_.assets.add_diffuse({0, 0, 0}, true, name);
+    OpenPbrMaterial black;
+    black.base_color = {{0, 0, 0}};
+    black.specular_weight = 0;
+    black.geometry_opacity = opacity;
+    black.geometry_opacity_cutoff = r.surface.geometry_opacity_cutoff;
+    return context_.assets.add_material(black, name);
+}
+
 MaterialId Materials::make(const Reading& r, const std::string& name) {
-    if (r.unlit) return context_.assets.add_diffuse({0, 0, 0}, true, name);
+    if (r.unlit) return make_unlit(r, name);
     if (const auto simple = make_simple(r, name)) return context_.assets.add_material(*simple, name);
     if (r.diffuse_transmission > 0) {
         const auto constant = [&](Rgb c) { return context_.assets.add_texture(ConstantTexture{c}, name); };

@@ -52,10 +52,13 @@ private:
     void read_normals(const Object& material, Reading& r);
     void multiply_by_vertices(std::optional<TextureId>& texture, bool alpha);
     MaterialId make(const Reading& r, const std::string& name);
+    MaterialId make_unlit(const Reading& r, const std::string& name);
     std::optional<Material> make_simple(const Reading& r, const std::string& name);
     std::optional<TextureId> texture(const Object& object, std::string_view key, Plane plane, Reading& r);
     TextureId texture(const TextureUse& use, Plane plane, ColorSpace space, Reading& r);
+    float factor(double x, const Object& object, std::string_view key, double most = 1);
     float unit(const Object& object, std::string_view key, float fallback);
+    Rgb color(const Object& object, std::string_view key, Rgb fallback, double most = 1);
     /// Of an extension's texture that the scene has no place for.
     void no_texture(const Object& object, std::string_view key);
 
