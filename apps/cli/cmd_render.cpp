@@ -292,7 +292,7 @@ int run_render(const RenderOptions& given) {
     if (auto status = check_aovs(by_default ? std::vector<std::string>() : o.outputs, said->aovs.value_or(AovSet()));
         !status)
         return report(status.error());
-    const auto loading = load_options(o.settings);
+    const auto loading = load_options(o.settings, o.scene);
     if (!loading) return report(loading.error());
 
     const uint32_t threads = o.execution.threads ? o.execution.threads : hardware_threads();

@@ -76,7 +76,7 @@ int run_replay(const ReplayOptions& o) {
     execution.threads = 1;
     const auto said = parse_overrides(o.settings, execution);
     if (!said) return report(said.error());
-    const auto loading = load_options(o.settings);
+    const auto loading = load_options(o.settings, o.scene);
     if (!loading) return report(loading.error());
     const ThreadLimit limit(std::min(hardware_threads(), kMaxThreads));
     auto loaded = load_scene(o.scene, *loading);

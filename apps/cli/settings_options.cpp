@@ -118,7 +118,35 @@ void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s
 
 }  // namespace
 
-Result<LoadOptions> load_options(const SettingsOptions& o) {
+namespace {
+
+Status check_effect_on_format(const SettingsOptions& o, const std::string& scene) {
+    const std::string extension = extension_of(scene);
+    if (extension == ".gltf" || extension == ".glb") return Ok{};
+    const std::pair<const char*, bool> given[] = {{"--variant", !o.variant.empty()},
+                                                  {"--gltf-light-units", !o.light_units.empty()},
+                                                  {"--gltf-memory", o.gltf_memory.has_value()},
+                                                  {"--allow-outside-paths", o.allow_outside_paths}};
+    for (const auto& [option, is_given] : given)
+        if (is_given)
+            return usage_error(fmt::format("{}: this is for glTF files (.gltf, .glb)", option),
+                               o.allow_outside_paths ? "scenes of other formats may name files anywhere" : "");
+    return Ok{};
+}
+
+Status check_environment(const SettingsOptions& o, const Scene& scene) {
+    if (!o.environment_rotation && !o.environment_scale) return Ok{};
+    for (const Light& light : scene.lights)
+        if (std::holds_alternative<EnvironmentLight>(light)) return Ok{};
+    return usage_error(
+        fmt::format("{}: the scene has no environment", o.environment_rotation ? "--env-rotate" : "--env-scale"),
+        "--env gives it one");
+}
+
+}  // namespace
+
+Result<LoadOptions> load_options(const SettingsOptions& o, const std::string& scene) {
+    if (auto status = check_effect_on_format(o, scene); !status) return std::move(status).error();
     LoadOptions out;
     if (o.allow_outside_paths) out.allow_outside_paths = true;
     out.gltf_variant = o.variant;
@@ -198,6 +226,7 @@ Result<RenderSettings> settings_for(const SettingsOptions& o, const Overrides& s
         return usage_error("--size: the scene has a crop window for its own size", "give --crop as well, or 'all'");
     override(o, said, s);
     if (auto status = validate(s); !status) return std::move(status).error();
+    if (auto status = check_environment(o, loaded.scene); !status) return std::move(status).error();
     if (!o.camera.empty())
         if (auto status = apply_camera(o.camera, loaded.scene, s.camera); !status) return std::move(status).error();
     return s;

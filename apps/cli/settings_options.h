@@ -38,13 +38,14 @@ struct Overrides {
 /// Whole numbers between separators, exactly `count` of them.
 std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char separator, size_t count);
 
-/// How the scene is to be loaded.
-Result<LoadOptions> load_options(const SettingsOptions& options);
+/// How the scene is to be loaded. Refuses options that have no effect on files of its kind.
+Result<LoadOptions> load_options(const SettingsOptions& options, const std::string& scene);
 
 /// Parses, and refuses what no scene could make right: loading one may take long.
 Result<Overrides> parse_overrides(const SettingsOptions& options, const Execution& execution);
 
-/// The scene's settings with the command line's, checked before anything is derived from the scene.
+/// The scene's settings with the command line's, checked before anything is derived from the scene. Refuses options for
+/// what the scene lacks.
 Result<RenderSettings> settings_for(const SettingsOptions& options, const Overrides& said, const LoadedScene& loaded);
 
 /// The command that replays a sample of a picture that was rendered with these options.

@@ -54,6 +54,47 @@ TEST_F(FilesAndArguments, ConvertAndDiffNeverReplaceTheirInputs) {
     EXPECT_EQ(steradian({"diff", "a.png", "a.png", "--output", "d.pfm"}).code, 0);
 }
 
+TEST_F(FilesAndArguments, OptionsForGltfFilesAreRefusedForOthers) {
+    const std::vector<std::vector<std::string>> options{{"--variant", "red"},
+                                                        {"--gltf-light-units", "photometric"},
+                                                        {"--gltf-memory", "10"},
+                                                        {"--allow-outside-paths"}};
+    spit(folder_.file("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const std::vector<std::string>& option : options)
+        for (const char* scene : {"scene.json", "m.obj"})
+            for (std::vector<std::string> command :
+                 {std::vector<std::string>{"render", scene, "--spp", "1", "-o", "a.png"},
+                  {"replay", scene, "--pixel", "1,1", "--sample", "0"}}) {
+                command.insert(command.end(), option.begin(), option.end());
+                expect_usage(command, option[0] + ": this is for glTF files");
+            }
+    EXPECT_FALSE(exists("a.png"));
+    // Where they have an effect they are taken: the name in upper case is one of glTF too.
+    spit(folder_.file("m.GLTF"), "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{}]}");
+    EXPECT_NE(steradian({"render", "m.GLTF", "--gltf-memory", "10", "--spp", "1", "-q", "-o", "a.png"}).code, 2);
+}
+
+TEST_F(FilesAndArguments, AnEnvironmentIsTurnedWhereThereIsOne) {
+    const std::string with = slurp(folder_.file("scene.json")),
+                      light = "{\"type\": \"environment\", \"radiance\": [1, 1, 1]}, ";
+    std::string without = with;
+    ASSERT_NE(without.find(light), std::string::npos);
+    without.replace(without.find(light), light.size(), "");
+    spit(folder_.file("without.json"), without);
+    const auto render = [](const std::string& scene, const std::vector<std::string>& more) {
+        std::vector<std::string> command{"render", scene, "--spp", "1", "-q", "-o", "a.png"};
+        command.insert(command.end(), more.begin(), more.end());
+        return command;
+    };
+    for (const char* option : {"--env-rotate", "--env-scale"}) {
+        const std::string text = std::string(option) + ": the scene has no environment";
+        expect_usage(render("without.json", {option, "2"}), text);
+        expect_usage(render("scene.json", {option, "2", "--env", "none"}), text);
+        EXPECT_EQ(steradian(render("scene.json", {option, "2"})).code, 0);
+        EXPECT_EQ(steradian(render("without.json", {option, "2", "--env", "1,1,1"})).code, 0);
+    }
+}
+
 TEST_F(FilesAndArguments, OneNewFileIsOneHoweverItIsSpelt) {
     fs::create_directory(folder_.file("sub"));
     fs::create_directory_symlink("sub", folder_.file("alias"));
