@@ -151,17 +151,21 @@ Accessor::Sparse Accessors::open_sparse(const Object& sparse, const Accessor& ac
                              "sparse indices must be UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT");
     out.indices = open_array(indices, out.count, size_of(out.index_type));
     out.values = open_array(values, out.count, accessor.components * size_of(accessor.component));
-    for (uint64_t i = 0; i < out.count; ++i) {
-        const uint64_t index = index_at(out.indices, out.index_type, i);
-        if (index >= accessor.count)
-            context_.source.fail(indices.offset(), "sparse index " + std::to_string(i) + " is " +
-                                                       std::to_string(index) + ", but the accessor has " +
-                                                       std::to_string(accessor.count) + " elements");
-        if (i > 0 && index <= index_at(out.indices, out.index_type, i - 1))
-            context_.source.fail(indices.offset(),
-                                 "sparse indices must increase, but number " + std::to_string(i) + " does not");
-    }
+    out.offset = indices.offset();
     return out;
+}
+
+/// Which element the k-th sparse one stands for. Fails where there is no such, or where it is not behind the one
+/// before.
+uint32_t Accessors::sparse_index(const Accessor& a, uint64_t k) const {
+    const uint64_t index = index_at(a.sparse.indices, a.sparse.index_type, k);
+    if (index >= a.count)
+        context_.source.fail(a.sparse.offset, "sparse index " + std::to_string(k) + " is " + std::to_string(index) +
+                                                  ", but the accessor has " + std::to_string(a.count) + " elements");
+    if (k > 0 && index <= index_at(a.sparse.indices, a.sparse.index_type, k - 1))
+        context_.source.fail(a.sparse.offset,
+                             "sparse indices must increase, but number " + std::to_string(k) + " does not");
+    return static_cast<uint32_t>(index);
 }
 
 const Accessor& Accessors::open(uint32_t number) {
@@ -227,7 +231,7 @@ std::vector<T> Accessors::read(const Accessor& a, Set set) {
     changed.data = a.sparse.values;
     changed.stride = a.components * size_of(a.component);
     for (uint64_t k = 0; k < a.sparse.count; ++k)
-        out[index_at(a.sparse.indices, a.sparse.index_type, k)] = set([&](uint32_t c) { return changed.number(k, c); });
+        out[sparse_index(a, k)] = set([&](uint32_t c) { return changed.number(k, c); });
     return out;
 }
 
@@ -264,8 +268,7 @@ std::vector<uint32_t> Accessors::read_indices(const Accessor& a) {
         for (uint64_t i = 0; i < a.count; ++i)
             out[i] = static_cast<uint32_t>(index_at(a.data + i * a.stride, a.component, 0));
     for (uint64_t k = 0; k < a.sparse.count; ++k)
-        out[index_at(a.sparse.indices, a.sparse.index_type, k)] =
-            static_cast<uint32_t>(index_at(a.sparse.values, a.component, k));
+        out[sparse_index(a, k)] = static_cast<uint32_t>(index_at(a.sparse.values, a.component, k));
     return out;
 }
 

@@ -16,8 +16,8 @@ enum class ComponentType : uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 51
 size_t size_of(ComponentType type) noexcept;
 std::string_view name_of(ComponentType type) noexcept;
 
-/// Where the elements are, everything checked: whatever is read by its numbers lies in a buffer. Nothing is believed
-/// of "min" and "max".
+/// Where the elements are, checked: whatever is read by its numbers lies in a buffer. Nothing is believed of "min" and
+/// "max". Only which elements are sparse is checked when they are read.
 struct Accessor {
     size_t offset = 0;  ///< in the JSON, for messages
     ComponentType component = ComponentType::f32;
@@ -32,6 +32,7 @@ struct Accessor {
         ComponentType index_type = ComponentType::u32;
         const std::byte* indices = nullptr;
         const std::byte* values = nullptr;
+        size_t offset = 0;  ///< of the indices, in the JSON
     } sparse = {};
 
     /// Scalars are vectors of one.
@@ -67,6 +68,7 @@ public:
 private:
     Accessor check(uint32_t number);
     Accessor::Sparse open_sparse(const Object& sparse, const Accessor& accessor);
+    uint32_t sparse_index(const Accessor& accessor, uint64_t k) const;
     const std::byte* open_array(const Object& object, uint64_t count, uint64_t element_size);
     void claim(const Accessor& accessor, size_t size);
     template <class T, class Set>
