@@ -108,6 +108,9 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
     std::cout << "\n  cameras    " << scene.cameras.size();
     for (size_t i = 0; i < scene.cameras.size(); ++i)
         std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
+    if (!loaded.animations.empty()) std::cout << "\n  animations " << loaded.animations.size();
+    for (size_t i = 0; i < loaded.animations.size(); ++i)
+        std::cout << (i ? ", " : ": ") << escape_for_display(loaded.animations[i]);
     const auto bytes = [](uint64_t n) { return format_quantity(double(n)) + "B"; };
     const MemoryEstimate m = estimate_memory(scene, r);
     std::cout << fmt::format("\n  memory     {} of geometry, {} of texels\n", bytes(s.geometry_bytes),
@@ -148,6 +151,9 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     w.EndArray();
     w.Key("cameras"), w.StartArray();
     for (size_t i = 0; i < scene.cameras.size(); ++i) write_text(w, camera_name(scene, i));
+    w.EndArray();
+    w.Key("animations"), w.StartArray();
+    for (const std::string& name : loaded.animations) write_text(w, name);
     w.EndArray();
     if (s.lo.x <= s.hi.x) {
         w.Key("bounds"), w.StartArray();

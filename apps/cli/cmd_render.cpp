@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "base/names.h"
@@ -18,6 +19,7 @@
 #include "progress.h"
 #include "render/memory_estimate.h"
 #include "render/metadata.h"
+#include "sequence.h"
 #include "settings_options.h"
 #include "steradian/image_io.h"
 #include "steradian/load.h"
@@ -35,6 +37,25 @@ struct RenderOptions {
     Execution execution;
     PictureOptions picture;
     bool quiet = false, json = false;
+    SequenceOptions sequence;
+    std::optional<Shot> shot = std::nullopt;  ///< which one of a sequence
+};
+
+/// What one picture of a sequence leaves for the next one.
+struct Said {
+    bool list = false;  ///< standard output gets an array of what it gets of each picture
+    size_t pictures = 0;
+    std::set<std::string> lines;
+
+    /// False for what has been said of a picture before.
+    bool is_new(const std::string& line) { return lines.insert(line).second; }
+    void next_json() {
+        if (list) std::cout << (pictures == 0 ? "[\n" : ",\n");
+        ++pictures;
+    }
+    void end_json() const {
+        if (list) std::cout << (pictures == 0 ? "[]\n" : "]\n");
+    }
 };
 
 // --- Signals: the first one asks the job to stop, the second one ends the process at once. ---------------------
@@ -112,6 +133,9 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
     w.StartObject();
     write_field(w, "scene", o.scene);
+    if (o.shot) number("number", o.shot->number);
+    if (o.settings.frame_time) w.Key("frame_time"), w.Double(*o.settings.frame_time);
+    if (o.settings.turn) w.Key("turn"), w.Double(*o.settings.turn);
     write_field(w, "hash", image_hash(r.image));
     if (!s.aovs.empty()) write_field(w, "color_hash", image_hash(color_channels(r.image)));
     number("width", r.image.width), number("height", r.image.height);
@@ -176,14 +200,21 @@ void print_fireflies(const RenderOptions& o, const RenderStatistics& s) {
 }
 
 /// What the file asks for and the picture does not show.
-void print_fidelity(const Diagnostics& fidelity) {
-    if (fidelity.empty()) return;
-    std::cerr << "not honoured:\n";
+void print_fidelity(const Diagnostics& fidelity, Said& said) {
+    std::string list;
     for (const Warning& w : fidelity.warnings()) {
         const std::string place = w.where.str();
-        std::cerr << fmt::format("  {}{}{}\n", w.message, place.empty() ? "" : ": " + place,
-                                 w.count > 1 ? fmt::format(" ({} times)", w.count) : std::string());
+        const std::string line = fmt::format("  {}{}{}\n", w.message, place.empty() ? "" : ": " + place,
+                                             w.count > 1 ? fmt::format(" ({} times)", w.count) : std::string());
+        if (said.is_new(line)) list += line;
     }
+    if (!list.empty()) std::cerr << "not honoured:\n" << list;
+}
+
+void print_warnings(const Diagnostics& diagnostics, Said& said) {
+    for (const Warning& warning : diagnostics.warnings())
+        if (const std::string line = warning.str(); said.is_new(line)) std::cerr << line << '\n';
+    std::cerr.flush();
 }
 
 /// Shows how the hierarchy gets on; render_failed when a signal came.
@@ -239,16 +270,16 @@ std::vector<std::string> write_outputs(const RenderOptions& o, const Image& imag
 
 /// What there is to say and to save once the picture is there.
 int finish(const RenderOptions& o, const RenderSettings& settings, const RenderResult& result, Diagnostics diagnostics,
-           const Diagnostics& fidelity) {
+           const Diagnostics& fidelity, Said& said) {
     Diagnostics afterwards;
     warn_bad_samples(o, result.statistics, afterwards);
     const std::vector<std::string> written = write_outputs(o, result.image, afterwards);
     if (!o.quiet) {
         report(afterwards), print_summary(settings, result, written), print_fireflies(o, result.statistics);
-        print_fidelity(fidelity);
+        print_fidelity(fidelity, said);
     }
     diagnostics.append(afterwards);
-    if (o.json) print_json(o, settings, result, written, diagnostics, fidelity);
+    if (o.json) said.next_json(), print_json(o, settings, result, written, diagnostics, fidelity);
     if (auto status = finish_stdout(); !status) return report(status.error());
     if (written.size() < o.outputs.size()) return kResources;
     const int signal = g_signal.load();
@@ -268,16 +299,22 @@ std::string aov_list() {
 }
 
 /// By a signal.
-int stopped_early(const char* when) {
-    std::cerr << fmt::format("stopped {}: nothing was written\n", when);
+int stopped_early(const char* when, const char* what = "nothing was written") {
+    std::cerr << fmt::format("stopped {}: {}\n", when, what);
     return 128 + g_signal;
 }
 
-int run_render(const RenderOptions& given) {
-    SignalScope signals;
+/// Their names, with the number of the picture where there are several.
+void number_outputs(RenderOptions& o) {
+    if (o.shot)
+        for (std::string& path : o.outputs) path = numbered(path, o.shot->number);
+}
+
+int render_one(const RenderOptions& given, SignalScope& signals, Said& told) {
     RenderOptions o = given;
     const bool by_default = o.outputs.empty() && !o.json;
     if (by_default) o.outputs.push_back(default_output(o.scene, ".png"));
+    number_outputs(o);
     o.execution.bvh = *find_name<BvhBuilder>(o.bvh);
     o.execution.bvh_layout = *find_name<BvhLayout>(o.bvh_layout);
     o.execution.isa = *find_name<Isa>(o.isa);
@@ -304,6 +341,7 @@ int run_render(const RenderOptions& given) {
     if (!settings) return report(settings.error());
     if (by_default && !settings->aovs.empty()) {
         o.outputs = {default_output(o.scene, ".exr")};
+        number_outputs(o);
         if (auto status = check_outputs(o.outputs, o.picture); !status) return report(status.error());
     }
     if (auto status = check_aovs(o.outputs, settings->aovs); !status) return report(status.error());
@@ -314,12 +352,36 @@ int run_render(const RenderOptions& given) {
         return report(status.error());
     auto scene = prepare_scene(o, std::move(loaded->scene), diagnostics);
     if (!scene) return g_signal != 0 ? stopped_early("before the hierarchy was built") : report(scene.error());
-    if (!o.quiet) report(diagnostics);
+    if (!o.quiet) print_warnings(diagnostics, told);
 
     const auto result = run_job(o, std::move(*scene), *settings, signals);
     if (!result) return report(result.error());
     if (g_signal != 0 && result->max_samples == 0) return stopped_early("before the first samples were done");
-    return finish(o, *settings, *result, std::move(diagnostics), loaded->fidelity);
+    // A film must not have a frame in it that is noisier than the others.
+    if (g_signal != 0 && o.shot && !result->complete)
+        return stopped_early("in the middle of a picture", "it was not written");
+    return finish(o, *settings, *result, std::move(diagnostics), loaded->fidelity, told);
+}
+
+/// The pictures of a sequence one after the other, up to the first that fails.
+int run_render(const RenderOptions& o) {
+    SignalScope signals;
+    Said said;
+    const auto shots = parse_sequence(o.sequence, o.settings);
+    if (!shots) return report(shots.error());
+    if (shots->empty()) return render_one(o, signals, said);
+    said.list = o.json;
+    int code = kDone;
+    for (size_t i = 0; i < shots->size() && code == kDone; ++i) {
+        RenderOptions one = o;
+        one.shot = (*shots)[i];
+        one.settings = settings_of(*one.shot, o.settings);
+        if (!o.quiet) std::cerr << one.shot->describe(i + 1, shots->size()) << std::endl;
+        code = g_signal != 0 ? stopped_early("before the next picture") : render_one(one, signals, said);
+    }
+    said.end_json();
+    const Status status = finish_stdout();
+    return code == kDone && !status ? report(status.error()) : code;
 }
 
 }  // namespace
@@ -332,7 +394,8 @@ void add_render(CLI::App& app, Action& action) {
         "What is not given comes from the scene file, and what that does not say is 512x512 pixels with 64 samples.\n"
         "A model without a scene gets a camera that frames it and a neutral studio light. Ctrl-C stops and writes "
         "what\n"
-        "is done; the file's metadata then says that it is partial.");
+        "is done; the file's metadata then says that it is partial. Of several pictures (--frames, --turntable) those\n"
+        "that are whole are there, and the one in work is left out.");
     c->add_option("SCENE", o->scene, "The scene or model to render")->required()->type_name("FILE");
     c->add_option("-o,--output", o->outputs,
                   "Where the picture goes: .exr, .hdr, .pfm or .png; may be repeated. Default: the scene's\nname with "
@@ -346,6 +409,7 @@ void add_render(CLI::App& app, Action& action) {
         ->group("Output");
     add_picture_options(c, o->picture, "Output");
     add_settings_options(c, o->settings);
+    add_sequence_options(c, o->sequence);
     add_count<uint32_t>(c, "--threads", o->execution.threads, 0, kMaxThreads,
                         "0: all the machine has; never changes the picture")
         ->group("Execution");

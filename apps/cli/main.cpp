@@ -25,6 +25,8 @@ constexpr const char* kExamples =
     "  steradian render scene.json -o picture.png            render with the settings of the scene\n"
     "  steradian render model.obj --spp 256 --size 1920x1080 a bare model gets a camera and a studio light\n"
     "  steradian render scene.json -o a.exr -o a.png --json  two files, statistics on standard output\n"
+    "  steradian render model.glb --frames 1:48 -o f.####.png frames of an animation, each to its own file\n"
+    "  steradian render model.glb --turntable 36             the model turned once, in 36 pictures\n"
     "  steradian replay scene.json --pixel 12,34 --sample 5  how one sample of one pixel came to its value\n"
     "  steradian info scene.json                             what is in a scene, or in a picture\n"
     "  steradian convert a.exr a.png --view agx              from linear light to something to look at\n"

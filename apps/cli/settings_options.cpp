@@ -150,6 +150,9 @@ Result<LoadOptions> load_options(const SettingsOptions& o, const std::string& sc
     LoadOptions out;
     if (o.allow_outside_paths) out.allow_outside_paths = true;
     out.gltf_variant = o.variant;
+    out.animation = o.animation;
+    out.frame_time = o.frame_time;
+    out.turn = o.turn;
     if (o.gltf_memory) out.gltf_free_bytes = *o.gltf_memory << 20;
     if (o.light_units == kLightUnits[1]) out.gltf_light_units = GltfLightUnits::photometric;
     EnvironmentOptions& environment = out.environment;
@@ -171,6 +174,8 @@ Result<LoadOptions> load_options(const SettingsOptions& o, const std::string& sc
 
 Result<Overrides> parse_overrides(const SettingsOptions& o, const Execution& execution) {
     Overrides said;
+    if (o.turn && !o.camera.empty())
+        return usage_error("--camera: a model that is turned has a camera of its own", "leave --camera out");
     const auto take = [](auto parsed, auto& into) -> Status {
         if (!parsed) return std::move(parsed).error();
         into = *parsed;
@@ -265,6 +270,9 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     number("--env-scale", o.environment_scale);
     if (o.allow_outside_paths) out += " --allow-outside-paths";
     word("--variant", o.variant);
+    word("--animation", o.animation);
+    number("--frame-time", o.frame_time);
+    number("--turn", o.turn);
     word("--gltf-light-units", o.light_units);
     number("--gltf-memory", o.gltf_memory);
     word("--integrator", o.integrator);
@@ -307,6 +315,19 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
         ->group("Picture");
     c->add_option("--variant", options.variant, "Which of the variants of a glTF file's materials, by name")
         ->type_name("NAME")
+        ->group("Picture");
+    c->add_option("--animation", options.animation,
+                  "Which animation of a glTF file moves it, by name or by number from 0; alone: its pose at 0 s.\n"
+                  "Without this and --frame-time the scene stands as the file has it")
+        ->type_name("NAME")
+        ->group("Picture");
+    constexpr double kMaxTime = 1e9;
+    add_real(c, "--frame-time", options.frame_time, 0, kMaxTime,
+             "The moment to show, in seconds, of --animation or of the file's first one; before the first and after\n"
+             "the last keyframe it stands still")
+        ->group("Picture");
+    add_real(c, "--turn", options.turn, -kMaxTurn, kMaxTurn,
+             "Degrees by which the model is turned before a camera of its own: a picture of render's --turntable")
         ->group("Picture");
     add_choice(c, "--gltf-light-units", options.light_units, kLightUnits,
                "How a glTF file's lights are meant: radiometric (W/sr and W/m², the default) or photometric (683\n"

@@ -21,8 +21,10 @@ struct SettingsOptions {
     std::optional<double> environment_rotation, environment_scale;
     bool allow_outside_paths = false;
     std::optional<uint64_t> gltf_memory;  ///< MiB
-    std::string variant, light_units;
-    std::string aovs;  ///< an option of `render` alone
+    std::string variant, light_units, animation;
+    std::optional<double> frame_time;  ///< seconds
+    std::optional<double> turn;        ///< degrees
+    std::string aovs;                  ///< an option of `render` alone
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);
 

@@ -46,6 +46,24 @@ void check_scene(const LoadedScene& loaded, uint64_t budget) {
     require(loaded.diagnostics.warnings().size() < 200 && loaded.fidelity.warnings().size() < 200);
 }
 
+/// True where it was accepted and has animations.
+bool load(std::string_view bytes, const LoadOptions& options) {
+    try {
+        LoadedScene loaded = gltf::load(bytes, "fuzz.gltf", "/nonexistent/steradian-fuzz", options);
+        check_scene(loaded, std::max<uint64_t>(kFreeBytes, 256 * bytes.size()));
+        // Meshes may have numbers that are not finite until this; then the scene as a whole is good or refused.
+        sanitize(loaded.scene, loaded.diagnostics);
+        if (const auto status = validate(loaded.scene); !status) require(!status.error().message.empty());
+        return !loaded.animations.empty();
+    } catch (const json::ReadFailure& failure) {
+        check_error(failure.error);
+        const SourceLocation& where = failure.error.where;
+        require(where.byte || (where.line > 0 && where.column > 0));
+        for (const char c : failure.error.message) require(static_cast<unsigned char>(c) >= 0x20);
+    }
+    return false;
+}
+
 }  // namespace
 }  // namespace steradian
 
@@ -54,18 +72,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     LoadOptions options;
     options.images.max_pixels = 1 << 16;
     options.gltf_free_bytes = kFreeBytes;
-    try {
-        LoadedScene loaded = gltf::load({reinterpret_cast<const char*>(data), size}, "fuzz.gltf",
-                                        "/nonexistent/steradian-fuzz", options);
-        check_scene(loaded, std::max<uint64_t>(kFreeBytes, 256 * size));
-        // Meshes may have numbers that are not finite until this; then the scene as a whole is good or refused.
-        sanitize(loaded.scene, loaded.diagnostics);
-        if (const auto status = validate(loaded.scene); !status) require(!status.error().message.empty());
-    } catch (const json::ReadFailure& failure) {
-        check_error(failure.error);
-        const SourceLocation& where = failure.error.where;
-        require(where.byte || (where.line > 0 && where.column > 0));
-        for (const char c : failure.error.message) require(static_cast<unsigned char>(c) >= 0x20);
-    }
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    if (!load(bytes, options)) return 0;
+    options.frame_time = 0.5;
+    load(bytes, options);
     return 0;
 }

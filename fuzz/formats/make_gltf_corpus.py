@@ -183,7 +183,7 @@ def textured(picture, kind):
 
 
 def moving():
-    """What is reported or done of skins, morph targets and animation."""
+    """A little of skins, morph targets and animation."""
     f = File(nodes=[{"mesh": 0, "skin": 0, "weights": [0.5]}, {"name": "bone", "children": [2]}, {}],
              scenes=[{"nodes": [0, 1]}])
     p = f.accessor("VEC3", FLOAT, TRIANGLE)
@@ -197,6 +197,51 @@ def moving():
     f.add("animations", {"samplers": [{"input": times, "output": moves, "interpolation": "LINEAR"}],
                          "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]})
     return f.binary()
+
+
+IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+
+def animated():
+    """Every path and interpolation, and normalised integers."""
+    f = File(nodes=[{"mesh": 0, "weights": [0.5, 1]}, {"children": [0], "name": "parent"}], scenes=[{"nodes": [1]}])
+    p = f.accessor("VEC3", FLOAT, TRIANGLE)
+    n = f.accessor("VEC3", FLOAT, [0, 0, 1] * 3)
+    small = f.accessor("VEC3", I8, [127, 0, 0, 0, -127, 0, 1, 2, 3], normalized=True)
+    moved = f.add("accessors", {"componentType": FLOAT, "type": "VEC3", "count": 3, "sparse": {
+        "count": 1, "indices": {"bufferView": f.view(struct.pack("<H", 2)), "componentType": U16},
+        "values": {"bufferView": f.view(struct.pack("<3f", 5, 6, 7))}}})
+    f.mesh({"POSITION": p, "NORMAL": n, "TEXCOORD_0": f.accessor("VEC2", FLOAT, [0, 0, 1, 0, 0, 1])},
+           targets=[{"POSITION": moved, "NORMAL": small}, {"POSITION": small}])
+    f.tree["meshes"][0]["weights"] = [0, 1]
+    times = f.accessor("SCALAR", FLOAT, [0, 0.25, 1])
+    two = f.accessor("SCALAR", FLOAT, [0, 1])
+    outputs = [("translation", "STEP", times, f.accessor("VEC3", FLOAT, range(9)), 1),
+               ("rotation", "LINEAR", times, f.accessor("VEC4", I16, [0, 0, 0, 32767, 0, 0, 32767, 0, 0, 32767, 0, 0], normalized=True), 1),
+               ("scale", "CUBICSPLINE", two, f.accessor("VEC3", FLOAT, [0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 0, 2, 2, 2, 0, 0, 0]), 1),
+               ("weights", "LINEAR", two, f.accessor("SCALAR", U8, [0, 255, 255, 0], normalized=True), 0),
+               ("rotation", "CUBICSPLINE", two, f.accessor("VEC4", FLOAT, [0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1] * 2), 0)]
+    f.add("animations", {
+        "name": "all",
+        "samplers": [{"input": i, "output": o, "interpolation": kind} for _, kind, i, o, _ in outputs],
+        "channels": [{"sampler": k, "target": {"node": node, "path": path}} for k, (path, *_, node) in enumerate(outputs)]})
+    return f.binary()
+
+
+def skinned():
+    """Two sets of joints, two skins of one mesh, a morph before them."""
+    f = File(nodes=[{"mesh": 0, "skin": 0}, {"mesh": 0, "skin": 1, "weights": [0.5]}, {"children": [3], "scale": [1, -1, 1]},
+                    {"rotation": [0, 0, 0.6, 0.8]}])
+    p = f.accessor("VEC3", FLOAT, TRIANGLE)
+    data = struct.pack("<32f", *IDENTITY, *IDENTITY)
+    matrices = f.add("accessors", {"bufferView": f.view(data), "componentType": FLOAT, "type": "MAT4", "count": 2})
+    f.tree["skins"] = [{"joints": [2, 3], "inverseBindMatrices": matrices}, {"joints": [3, 2, 2]}]
+    f.mesh({"POSITION": p, "NORMAL": f.accessor("VEC3", FLOAT, [0, 0, 1] * 3),
+            "TANGENT": f.accessor("VEC4", FLOAT, [1, 0, 0, 1] * 3),
+            "JOINTS_0": f.accessor("VEC4", U8, [0, 1, 0, 0] * 3), "JOINTS_1": f.accessor("VEC4", U16, [1, 0, 1, 0] * 3),
+            "WEIGHTS_0": f.accessor("VEC4", U8, [128, 64, 0, 0] * 3, normalized=True),
+            "WEIGHTS_1": f.accessor("VEC4", U16, [4096, 12288, 0, 0] * 3, normalized=True)}, targets=[{"POSITION": p}])
+    return f.text()
 
 
 def webp(width, height, channels, lossless):
@@ -311,7 +356,7 @@ def files():
     return {"indexed.gltf": indexed(), "strip_and_fan.glb": strip_and_fan(), "quantized.glb": quantized(),
             "sparse.gltf": sparse(), "nodes.gltf": nodes(), "instancing.glb": instancing(), "materials.gltf": materials(),
             "variants.gltf": variants(), "png.glb": textured(png, "image/png"), "jpeg.glb": textured(jpeg, "image/jpeg"),
-            "moving.glb": moving(), "meshopt.glb": meshopt_file(), "webp.glb": webp_textured(),
+            "moving.glb": moving(), "animated.glb": animated(), "skinned.gltf": skinned(), "meshopt.glb": meshopt_file(), "webp.glb": webp_textured(),
             "draco_sequential.glb": draco_file(0), "draco_edgebreaker.glb": draco_file(7)}
 
 

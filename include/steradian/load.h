@@ -30,6 +30,11 @@ struct EnvironmentOptions {
 enum class GltfLightUnits : uint8_t { radiometric, photometric };
 
 struct LoadOptions {
+    /// Degrees by which the scene is turned as on a turntable: about the vertical through the middle of its bounds,
+    /// counter-clockwise seen from above, before a camera that stands still and frames every angle alike (added to
+    /// those of the scene, and chosen by its settings). What shines from far away and a bare model's studio stand still
+    /// too.
+    std::optional<double> turn = std::nullopt;
     uint64_t max_file_bytes = uint64_t(4) << 30;  ///< of one file
     ImageLimits images{};
     uint32_t max_depth = 256;  ///< of nested JSON
@@ -43,6 +48,12 @@ struct LoadOptions {
     uint64_t gltf_free_bytes = uint64_t(320) << 20;
     GltfLightUnits gltf_light_units = GltfLightUnits::radiometric;
     std::string gltf_variant = {};  ///< of KHR_materials_variants, by name; empty: none
+    /// Which of a glTF file's animations moves it, by name or by number from 0. Empty: the first one where a time is
+    /// given, else none, so that the scene stands as the file has it.
+    std::string animation = {};
+    /// The moment of the animation, in seconds; before its first keyframe and after its last one it stands still. Not
+    /// set: 0.
+    std::optional<double> frame_time = std::nullopt;
 };
 
 /// What a file says: the scene, and the settings that it asks for (defaults where it is silent).
@@ -52,6 +63,7 @@ struct LoadedScene {
     Diagnostics diagnostics;
     /// What the file asks for and the picture will not show, or show differently.
     Diagnostics fidelity;
+    std::vector<std::string> animations = {};  ///< their names, or "animation 3"
     /// Every file that was read, the scene itself first: outputs must not be among them.
     std::vector<std::string> files;
 };

@@ -68,7 +68,10 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
     auto text = read_file(path, options.max_file_bytes);
     if (!text) return std::move(text).error();
     auto loaded = load_scene_json(*text, path, folder_of_file(path), options);
-    if (loaded) loaded->files.insert(loaded->files.begin(), path);
+    if (!loaded) return loaded;
+    loaded->files.insert(loaded->files.begin(), path);
+    Assets assets(*loaded, {}, options);
+    if (options.turn) add_turntable_camera(*loaded, assets, *options.turn);
     return loaded;
 }
 
@@ -76,9 +79,12 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
 /// around it. An author's own camera may stand below the model, so then there is no floor.
 void complete(LoadedScene& loaded, Assets& assets, const LoadOptions& options) {
     const bool dark = loaded.scene.lights.empty() && !options.environment.replace;
-    const bool framed = loaded.scene.cameras.empty();
-    if (framed) add_framing_camera(loaded, assets);
-    if (dark) add_studio(loaded, assets, framed);
+    const bool framed = loaded.scene.cameras.empty() || options.turn;
+    if (options.turn)
+        add_turntable_camera(loaded, assets, *options.turn);
+    else if (framed)
+        add_framing_camera(loaded, assets);
+    if (dark) add_studio(loaded, assets, framed, options.turn.value_or(0));
 }
 
 void remove_environment(Scene& scene) {
@@ -150,18 +156,20 @@ Status apply_environment(LoadedScene& loaded, const LoadOptions& options) {
             environment->rotation += wanted.rotation;
             environment->radiance = environment->radiance * wanted.scale;
         }
+    if (options.turn) turn_sky(loaded.scene, -*options.turn);
     return Ok{};
 }
 
 struct Format {
     std::string_view extension;
+    bool animated;  ///< whether files of it can have animations
     Result<LoadedScene> (*load)(const std::string& path, const LoadOptions& options);
 };
-constexpr Format kFormats[] = {{".json", load_json_file},
-                               {".gltf", load_gltf_file},
-                               {".glb", load_gltf_file},
-                               {".obj", load_model_file},
-                               {".ply", load_model_file}};
+constexpr Format kFormats[] = {{".json", false, load_json_file},
+                               {".gltf", true, load_gltf_file},
+                               {".glb", true, load_gltf_file},
+                               {".obj", false, load_model_file},
+                               {".ply", false, load_model_file}};
 
 /// The one place where what readers throw becomes a value.
 template <class Load>
@@ -186,6 +194,9 @@ Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& optio
     for (const Format& format : kFormats)
         if (format.extension == extension)
             return guarded(path, [&]() -> Result<LoadedScene> {
+                if (!format.animated && (options.frame_time || !options.animation.empty()))
+                    return about_file(path, ErrorCode::usage, "scenes of this format have no animations",
+                                      "those of glTF files (.gltf, .glb) may have");
                 auto loaded = format.load(path, options);
                 if (loaded)
                     if (Status status = apply_environment(*loaded, options); !status) return std::move(status).error();

@@ -54,6 +54,28 @@ void each_point(const Scene& scene, Visit visit) {
     }
 }
 
+/// The same of shapes of all kinds, as balls of some radius about points.
+template <class Visit>
+void each_ball(const Scene& scene, Visit visit) {
+    each_point(scene, [&](Vec3d p) { visit(p, 0.0); });
+    for (const Instance& i : scene.instances) {
+        const Shape& shape = scene.shapes[index(i.shape)];
+        const auto place = [&](Vec3 p) { return transform_point(i.world_from_object, p); };
+        const auto ball = [&](Vec3 center, float radius) {
+            double longest = 0;  // no vector becomes longer than this times its length
+            for (const auto& row : i.world_from_object.m)
+                for (int c = 0; c < 3; ++c) longest += row[size_t(c)] * row[size_t(c)];
+            const double scale = uniform_scale(i.world_from_object).value_or(std::sqrt(longest));
+            visit(place(center), std::fabs(scale) * static_cast<double>(radius));
+        };
+        if (const auto* sphere = std::get_if<Sphere>(&shape)) ball(sphere->center, sphere->radius);
+        if (const auto* disk = std::get_if<Disk>(&shape)) ball(disk->center, disk->radius);
+        if (const auto* r = std::get_if<Rectangle>(&shape))
+            for (const float u : {-1.0f, 1.0f})
+                for (const float v : {-1.0f, 1.0f}) visit(place(r->center + r->half_u * u + r->half_v * v), 0.0);
+    }
+}
+
 /// Where the model is: the middle of its bounding box, half the box's diagonal, its lowest height.
 struct Extent {
     Vec3d center;
@@ -61,13 +83,23 @@ struct Extent {
 };
 
 /// A lone point gets a ball that it can be seen in.
-Extent extent_of(const Scene& scene) {
-    Box box;
-    each_point(scene, [&](Vec3d p) { box.add(p); });
+Extent extent_of(const Box& box) {
     if (box.empty()) return {};
     const Vec3d center = (box.lo + box.hi) * 0.5;
     const double smallest = max_of(1e-6 * length(center), 1e-12);
     return {center, max_of(length(box.hi - box.lo) * 0.5, smallest), box.lo.y};
+}
+
+Extent extent_of(const Scene& scene) {
+    Box box;
+    each_point(scene, [&](Vec3d p) { box.add(p); });
+    return extent_of(box);
+}
+
+/// About +Y, counter-clockwise seen from above.
+Vec3d turned(Vec3d v, double degrees) {
+    const double angle = degrees * (std::numbers::pi / 180), c = math::cos(angle), s = math::sin(angle);
+    return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
 }
 
 /// The axes of a view: to the right, upwards, and back towards the camera.
@@ -79,6 +111,19 @@ struct ViewAxes {
         up = cross(back, right);
     }
 };
+
+constexpr Vec3d kTowardsCamera{0.5, 0.42, 1};
+constexpr double kFieldOfView = 25;  // degrees
+/// The tangent of half the field of view, of the part of it that is to be filled.
+double framed_slope() { return 0.86 * math::tan(kFieldOfView * std::numbers::pi / 360); }
+
+PerspectiveCamera camera_at(Vec3d position, Vec3d target) {
+    PerspectiveCamera camera;
+    camera.position = Vec3(position);
+    camera.look_at = Vec3(target);
+    camera.vertical_fov = static_cast<float>(kFieldOfView);
+    return camera;
+}
 
 /// The nearest place from which a picture with this slope (the tangent of half its field of view, both ways) holds
 /// every vertex. One along an axis a of the picture with coordinate p and depth z is inside when
@@ -94,10 +139,28 @@ PerspectiveCamera frame(const Scene& scene, const Extent& extent, const ViewAxes
     const double tight = max_of(high.x + low.x, high.y + low.y) / (2 * slope);
     const double distance = max_of(tight, high.z + extent.radius);
     const Vec3d middle = extent.center + axes.right * ((high.x - low.x) * 0.5) + axes.up * ((high.y - low.y) * 0.5);
-    PerspectiveCamera camera;
-    camera.position = Vec3(middle + axes.back * distance);
-    camera.look_at = Vec3(middle);
-    return camera;
+    return camera_at(middle + axes.back * distance, middle);
+}
+
+/// The same where everything goes round the vertical through the middle: of a point at the distance r and the height h
+/// the most along a vector v is then h v.y + r |(v.x, v.z)|.
+PerspectiveCamera frame_turning(const Scene& scene, const Extent& extent, const ViewAxes& axes, double slope) {
+    double side = -kInfinity, high = side, low = side, depth = side;
+    each_ball(scene, [&](Vec3d p, double radius) {
+        const Vec3d q = p - extent.center;
+        const double r = std::sqrt(q.x * q.x + q.z * q.z);
+        const auto most = [&](Vec3d v) {
+            return q.y * v.y + r * std::sqrt(v.x * v.x + v.z * v.z) + radius * length(v);
+        };
+        side = max_of(side, most(axes.right + axes.back * slope));
+        high = max_of(high, most(axes.up + axes.back * slope));
+        low = max_of(low, most(-axes.up + axes.back * slope));
+        depth = max_of(depth, most(axes.back));
+    });
+    if (!(depth > -kInfinity)) side = high = low = depth = extent.radius;
+    const double distance = max_of(max_of(2 * side, high + low) / (2 * slope), depth + extent.radius);
+    const Vec3d middle = extent.center + axes.up * ((high - low) * 0.5);
+    return camera_at(middle + axes.back * distance, middle);
 }
 
 /// A square light of the given half side that faces the model's middle.
@@ -124,15 +187,26 @@ void add_floor(const Extent& extent, Assets& assets) {
 }  // namespace
 
 void add_framing_camera(const LoadedScene& loaded, Assets& assets) {
-    constexpr double kFieldOfView = 25, kFilled = 0.86;
-    const Extent extent = extent_of(loaded.scene);
-    const double slope = kFilled * math::tan(kFieldOfView * std::numbers::pi / 360);
-    PerspectiveCamera camera = frame(loaded.scene, extent, ViewAxes({0.5, 0.42, 1}), slope);
-    camera.vertical_fov = static_cast<float>(kFieldOfView);
-    assets.add_camera(camera, "camera");
+    assets.add_camera(frame(loaded.scene, extent_of(loaded.scene), ViewAxes(kTowardsCamera), framed_slope()), "camera");
 }
 
-void add_studio(const LoadedScene& loaded, Assets& assets, bool floor) {
+void add_turntable_camera(LoadedScene& loaded, Assets& assets, double degrees) {
+    Box box;
+    each_ball(loaded.scene, [&](Vec3d p, double r) { box.add(p - Vec3d{r, r, r}), box.add(p + Vec3d{r, r, r}); });
+    const ViewAxes axes(turned(kTowardsCamera, -degrees));
+    assets.add_camera(frame_turning(loaded.scene, extent_of(box), axes, framed_slope()), "turntable");
+    loaded.settings.camera = static_cast<uint32_t>(loaded.scene.cameras.size() - 1);
+}
+
+void turn_sky(Scene& scene, double degrees) {
+    for (Light& light : scene.lights) {
+        if (auto* environment = std::get_if<EnvironmentLight>(&light))
+            environment->rotation += static_cast<float>(degrees);
+        if (auto* sun = std::get_if<DirectionalLight>(&light)) sun->direction = Vec3(turned(sun->direction, degrees));
+    }
+}
+
+void add_studio(const LoadedScene& loaded, Assets& assets, bool floor, double turn) {
     const Extent extent = extent_of(loaded.scene);
     if (floor) add_floor(extent, assets);
     const auto add_softbox = [&](const Rectangle& shape, Rgb radiance, const std::string& name) {
@@ -140,8 +214,8 @@ void add_studio(const LoadedScene& loaded, Assets& assets, bool floor) {
             assets.add_instance({assets.add_shape(shape, name), assets.default_material(true), Affine{}}, name);
         assets.add_light(AreaLight{instance, radiance, false, 1}, name);
     };
-    add_softbox(softbox(extent, {-0.9, 1.2, 0.8}, 5, 1.5), {8.8f, 8.2f, 7.4f}, "key light");
-    add_softbox(softbox(extent, {1.0, 0.7, -0.9}, 5, 1.2), {4, 4.5f, 5.2f}, "rim light");
+    add_softbox(softbox(extent, turned({-0.9, 1.2, 0.8}, -turn), 5, 1.5), {8.8f, 8.2f, 7.4f}, "key light");
+    add_softbox(softbox(extent, turned({1.0, 0.7, -0.9}, -turn), 5, 1.2), {4, 4.5f, 5.2f}, "rim light");
     EnvironmentLight fill;
     fill.radiance = {0.26f, 0.28f, 0.31f};
     assets.add_light(fill, "studio");

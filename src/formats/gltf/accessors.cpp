@@ -127,6 +127,32 @@ float Accessor::number(uint64_t i, uint32_t c) const noexcept {
     return data ? gltf::component(data + i * stride + c * size_of(component), component, normalized) : 0;
 }
 
+float Accessor::element(uint64_t i, uint32_t c) const noexcept {
+    uint64_t begin = 0, end = sparse.count;
+    while (begin < end) {
+        const uint64_t middle = begin + (end - begin) / 2;
+        index_at(sparse.indices, sparse.index_type, middle) < i ? begin = middle + 1 : end = middle;
+    }
+    if (begin == sparse.count || index_at(sparse.indices, sparse.index_type, begin) != i) return number(i, c);
+    return gltf::component(sparse.values + (begin * components + c) * size_of(component), component, normalized);
+}
+
+void Accessor::add_to(std::span<double> sums, uint32_t width, double factor) const noexcept {
+    const auto add = [&](uint64_t i, uint32_t c, float x) { sums[i * width + c] += factor * static_cast<double>(x); };
+    const auto is_sparse = [&](uint64_t i, uint64_t next) {
+        return next < sparse.count && index_at(sparse.indices, sparse.index_type, next) == i;
+    };
+    for (uint64_t i = 0, next = 0; data && i < count; ++i)
+        if (is_sparse(i, next))
+            ++next;
+        else
+            for (uint32_t c = 0; c < components; ++c) add(i, c, number(i, c));
+    for (uint64_t k = 0; k < sparse.count; ++k)
+        for (uint32_t c = 0; c < components; ++c)
+            add(index_at(sparse.indices, sparse.index_type, k), c,
+                gltf::component(sparse.values + (k * components + c) * size_of(component), component, normalized));
+}
+
 /// `count` elements without gaps, of which an object says the buffer view and the offset in it.
 const std::byte* Accessors::open_array(const Object& object, uint64_t count, uint64_t element_size) {
     const auto view = buffers_.view(object.require_reference("bufferView", context_.tables.buffer_views));

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "formats/gltf/draco.h"
@@ -39,6 +40,10 @@ struct Accessor {
     bool has_vectors_of(uint32_t n) const noexcept { return components == n && !is_matrix; }
     /// Component c of element i as a float; `sparse` is not looked at.
     float number(uint64_t i, uint32_t c) const noexcept;
+    /// The same with sparse elements in their places; takes the logarithm of their number.
+    float element(uint64_t i, uint32_t c) const noexcept;
+    /// Adds `factor` times each element to that of `sums`, whose elements have `width` components, at least as many.
+    void add_to(std::span<double> sums, uint32_t width, double factor) const noexcept;
 };
 
 class Accessors {

@@ -63,8 +63,8 @@ std::string remedy(std::string_view extension) {
 }
 
 Tables::Tables(const Object& root) {
-    for (Table* table : {&accessors, &buffer_views, &buffers, &cameras, &images, &materials, &meshes, &nodes, &samplers,
-                         &scenes, &textures})
+    for (Table* table : {&accessors, &animations, &buffer_views, &buffers, &cameras, &images, &materials, &meshes,
+                         &nodes, &samplers, &scenes, &skins, &textures})
         table->elements = root.array(table->key);
     if (const auto punctual = root.extension("KHR_lights_punctual")) lights.elements = punctual->array(lights.key);
     if (const auto all = root.extension("KHR_materials_variants")) variants.elements = all->array(variants.key);

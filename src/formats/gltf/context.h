@@ -15,10 +15,12 @@ namespace steradian::gltf {
 
 /// The arrays that elements are referred to in.
 struct Tables {
+    Table animations{"animations", "animation"};
     Table accessors{"accessors", "accessor"}, buffer_views{"bufferViews", "buffer view"}, buffers{"buffers", "buffer"};
     Table cameras{"cameras", "camera"}, images{"images", "image"}, lights{"lights", "light"};
     Table materials{"materials", "material"}, meshes{"meshes", "mesh"}, nodes{"nodes", "node"};
-    Table samplers{"samplers", "sampler"}, scenes{"scenes", "scene"}, textures{"textures", "texture"};
+    Table samplers{"samplers", "sampler"}, scenes{"scenes", "scene"}, skins{"skins", "skin"};
+    Table textures{"textures", "texture"};
     Table variants{"variants", "variant"};
 
     explicit Tables(const Object& root);

@@ -1,5 +1,6 @@
 #include "formats/gltf/gltf.h"
 
+#include "formats/gltf/animation.h"
 #include "formats/gltf/container.h"
 #include "formats/gltf/nodes.h"
 #include "formats/studio.h"
@@ -42,7 +43,7 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     Images images(context, buffers);
     Materials materials(context, images);
     Meshes meshes(context, accessors, materials);
-    place_nodes(context, accessors, meshes, root);
+    place_nodes(context, accessors, meshes, read_pose(context, accessors), root);
     images.decode();
     const bool sky_to_see = options.environment.replace.has_value();
     if (loaded.scene.instances.empty() && !sky_to_see) context.warn("the scene has nothing to render", root.offset());

@@ -118,7 +118,15 @@ void Meshes::read_colors(const Object& primitive, const Key& key, Mesh& mesh) {
     if (clamped) context_.warn("colours of vertices must be between 0 and 1 and were clamped", colors.offset);
 }
 
-std::optional<Mesh> Meshes::read(const Object& primitive, const Key& key) {
+/// MikkTSpace, of the vertices as they are rendered.
+void Meshes::add_made_tangents(const Object& primitive, const Key& key, Mesh& mesh) {
+    if (!key.made_tangents) return;
+    constexpr uint64_t kMostPerCorner = sizeof(Tangent) + sizeof(Vec3) * 2 + sizeof(Vec2);
+    context_.budget.take(mesh.indices.size() * kMostPerCorner, context_.source, primitive.offset());
+    add_tangents(mesh, *key.made_tangents);
+}
+
+std::optional<Mesh> Meshes::read(const Object& primitive, const Key& key, const Joints* joints) {
     const Accessor positions = open_attribute(primitive, "POSITION", key.positions, 3);
     Mesh mesh;
     mesh.indices = corners(primitive, key, positions.count);
@@ -131,11 +139,11 @@ std::optional<Mesh> Meshes::read(const Object& primitive, const Key& key) {
     if (key.tangents != kNone)
         mesh.tangents =
             accessors_.read_tangents(open_attribute(primitive, "TANGENT", key.tangents, 4, positions.count));
-    if (key.made_tangents) {
-        constexpr uint64_t kMostPerCorner = sizeof(Tangent) + sizeof(Vec3) * 2 + sizeof(Vec2);
-        context_.budget.take(mesh.indices.size() * kMostPerCorner, context_.source, primitive.offset());
-        add_tangents(mesh, *key.made_tangents);
-    }
+    if (!key.targets.empty()) morph(context_, accessors_, key.targets, mesh);
+    if (!key.influences.empty())
+        skin(context_, accessors_, Object(context_.source, primitive.require("attributes"), "'attributes'"),
+             key.influences, *joints, mesh);
+    add_made_tangents(primitive, key, mesh);
     return mesh;
 }
 
@@ -177,7 +185,18 @@ VertexColors Meshes::colors_of(const Object& primitive) {
     return colors.components == 4 ? VertexColors::rgba : VertexColors::rgb;
 }
 
-std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, const std::string& name) {
+void Meshes::deform(const Object& primitive, const Object& attributes, const Deformation& deformation, Key& key) {
+    key.targets = morph_targets(context_, primitive, deformation.weights);
+    if (!deformation.joints) return;
+    key.influences = influences_of(context_, attributes);
+    if (key.influences.empty())
+        context_.warn("a mesh without joints has a skin, which has no effect on it", primitive.offset());
+    else
+        key.skin = deformation.skin;
+}
+
+std::optional<Meshes::Part> Meshes::part(const Object& primitive, const Look& look, const std::string& name,
+                                         const Deformation& deformation) {
     const Object attributes(context_.source, primitive.require("attributes"), "'attributes'");
     const auto mode = static_cast<uint32_t>(primitive.integer_or("mode", kTriangles, 0, kFan));
     if (mode < kTriangles) {
@@ -185,20 +204,24 @@ std::optional<ShapeId> Meshes::shape(const Object& primitive, const Look& look, 
         return std::nullopt;
     }
     accessors_.decompress(primitive);
-    const Key key = key_of(primitive, attributes, look, mode);
+    Key key = key_of(primitive, attributes, look, mode);
+    deform(primitive, attributes, deformation, key);
     if (key.positions == kNone) {
         context_.warn("a primitive without positions is ignored", attributes.offset());
         return std::nullopt;
     }
-    if (const auto known = shapes_.find(key); known != shapes_.end()) return known->second;
-    std::optional<ShapeId> made;
-    if (auto mesh = read(primitive, key)) {
-        context_.budget.take(sizeof(Mesh) + sizeof(Shape) + 2 * name.size(), context_.source, primitive.offset());
-        const MeshId id = context_.assets.add_mesh(std::move(*mesh), name);
-        made = context_.assets.add_shape(id, name);
+    auto known = shapes_.find(key);
+    if (known == shapes_.end()) {
+        std::optional<ShapeId> made;
+        if (auto mesh = read(primitive, key, deformation.joints)) {
+            context_.budget.take(sizeof(Mesh) + sizeof(Shape) + 2 * name.size(), context_.source, primitive.offset());
+            const MeshId id = context_.assets.add_mesh(std::move(*mesh), name);
+            made = context_.assets.add_shape(id, name);
+        }
+        known = shapes_.emplace(key, made).first;
     }
-    shapes_.emplace(key, made);
-    return made;
+    if (!known->second) return std::nullopt;
+    return Part{*known->second, look, !key.influences.empty()};
 }
 
 /// What the chosen variant says (KHR_materials_variants), or else the primitive's own.
@@ -214,8 +237,20 @@ std::optional<uint32_t> Meshes::material_of(const Object& primitive) {
     return primitive.reference("material", context_.tables.materials);
 }
 
-const std::vector<Meshes::Part>& Meshes::parts(uint32_t number) {
-    if (const auto known = meshes_.find(number); known != meshes_.end()) return known->second;
+const Meshes::Morphing& Meshes::morphing(uint32_t number) {
+    if (const auto known = morphing_.find(number); known != morphing_.end()) return known->second;
+    const Object mesh(context_.source, context_.tables.meshes.elements[number], "a mesh");
+    Morphing out;
+    out.weights = read_weights(context_, mesh);
+    const std::vector<Value> primitives = mesh.array("primitives");
+    if (!primitives.empty())
+        out.targets = Object(context_.source, primitives[0], "a primitive").array("targets").size();
+    return morphing_.emplace(number, std::move(out)).first->second;
+}
+
+const std::vector<Meshes::Part>& Meshes::parts(uint32_t number, const Deformation& deformation) {
+    MeshKey key{number, deformation.weights, deformation.skin};
+    if (const auto known = meshes_.find(key); known != meshes_.end()) return known->second;
     const Object mesh(context_.source, context_.tables.meshes.elements[number], "a mesh");
     const std::string name = name_of(mesh, "mesh", number);
     mesh.require("primitives");
@@ -223,11 +258,9 @@ const std::vector<Meshes::Part>& Meshes::parts(uint32_t number) {
     for (const Value value : mesh.array("primitives")) {
         const Object primitive(context_.source, value, "a primitive");
         const Look& look = materials_.look(material_of(primitive), colors_of(primitive));
-        if (const auto made = shape(primitive, look, name)) parts.push_back({*made, look});
-        if (!primitive.array("targets").empty())
-            context_.not_honoured("morph targets are not applied", primitive.offset_of("targets"));
+        if (const auto made = part(primitive, look, name, deformation)) parts.push_back(*made);
     }
-    return meshes_.emplace(number, std::move(parts)).first->second;
+    return meshes_.emplace(std::move(key), std::move(parts)).first->second;
 }
 
 }  // namespace steradian::gltf

@@ -4,12 +4,22 @@
 #include <array>
 #include <compare>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "formats/gltf/accessors.h"
 #include "formats/gltf/materials.h"
+#include "formats/gltf/morph.h"
+#include "formats/gltf/skin.h"
 
 namespace steradian::gltf {
+
+/// What a node makes of its mesh.
+struct Deformation {
+    std::vector<double> weights;     ///< of morph targets in order; those that are missing are 0, the last one is not
+    std::optional<uint32_t> skin;    ///< its number
+    const Joints* joints = nullptr;  ///< of that skin, where there is one
+};
 
 class Meshes {
 public:
@@ -19,9 +29,18 @@ public:
     struct Part {
         ShapeId shape{};
         Look look;
+        bool in_world = false;  ///< a skin has moved it there; others are where their nodes are
     };
-    /// What a mesh consists of, read when it is first asked for: nodes that share it share its triangles.
-    const std::vector<Part>& parts(uint32_t mesh);
+    /// What a mesh consists of, read when it is first asked for: nodes that share it share its triangles, unless they
+    /// deform them.
+    const std::vector<Part>& parts(uint32_t mesh, const Deformation& deformation);
+
+    /// A mesh's own weights and how many targets it has, by the first of its primitives.
+    struct Morphing {
+        std::vector<double> weights;
+        size_t targets = 0;
+    };
+    const Morphing& morphing(uint32_t mesh);
 
 private:
     static constexpr uint32_t kNone = 0xffffffffu;
@@ -32,13 +51,19 @@ private:
         uint32_t mode = 0;
         uint32_t uv_sets = 0;                                  ///< bits: those that somebody reads
         std::optional<uint32_t> made_tangents = std::nullopt;  ///< along these coordinates
+        std::vector<MorphTarget> targets = {};
+        std::vector<Influences> influences = {};
+        std::optional<uint32_t> skin = std::nullopt;
         auto operator<=>(const Key&) const = default;
     };
 
     std::optional<uint32_t> material_of(const Object& primitive);
-    std::optional<ShapeId> shape(const Object& primitive, const Look& look, const std::string& name);
+    std::optional<Part> part(const Object& primitive, const Look& look, const std::string& name,
+                             const Deformation& deformation);
     Key key_of(const Object& primitive, const Object& attributes, const Look& look, uint32_t mode);
-    std::optional<Mesh> read(const Object& primitive, const Key& key);
+    void deform(const Object& primitive, const Object& attributes, const Deformation& deformation, Key& key);
+    std::optional<Mesh> read(const Object& primitive, const Key& key, const Joints* joints);
+    void add_made_tangents(const Object& primitive, const Key& key, Mesh& mesh);
     void read_uvs(const Object& primitive, const Key& key, Mesh& mesh);
     void read_colors(const Object& primitive, const Key& key, Mesh& mesh);
     VertexColors colors_of(const Object& primitive);
@@ -51,7 +76,9 @@ private:
     Context& context_;
     Accessors& accessors_;
     Materials& materials_;
-    std::map<uint32_t, std::vector<Part>> meshes_;
+    using MeshKey = std::tuple<uint32_t, std::vector<double>, std::optional<uint32_t>>;  ///< with weights and skin
+    std::map<MeshKey, std::vector<Part>> meshes_;
+    std::map<uint32_t, Morphing> morphing_;
     std::map<Key, std::optional<ShapeId>> shapes_;  ///< of primitives that say the same
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "math/transform.h"
+#include "math/vector.h"
 
 namespace steradian::gltf {
 namespace {
@@ -42,11 +43,22 @@ Affine read_rotation(Context& context, const Object& node) {
 
 class Placer {
 public:
-    Placer(Context& context, Accessors& accessors, Meshes& meshes)
-        : context_(context), accessors_(accessors), meshes_(meshes) {}
+    Placer(Context& context, Accessors& accessors, Meshes& meshes, const Pose& pose)
+        : context_(context), accessors_(accessors), meshes_(meshes), skins_(context, accessors), pose_(pose) {}
 
+    /// Where every node is comes first: skins look at others than their own.
     void run(const Object& root) {
-        seen_.assign(context_.tables.nodes.elements.size(), false);
+        const size_t nodes = context_.tables.nodes.elements.size();
+        context_.budget.take(nodes * (sizeof(Skins::Places::value_type) + sizeof(uint32_t)), context_.source,
+                             root.offset());
+        seen_.assign(nodes, false);
+        world_from_node_.resize(nodes);
+        walk(root);
+        for (const uint32_t node : order_) fill(node);
+    }
+
+private:
+    void walk(const Object& root) {
         // Last in, first out: in reverse, so that nodes come in the order of the file.
         std::vector<Step> open;
         for (const Start& start : roots(root)) push(open, start.node, start.offset, {});
@@ -58,7 +70,6 @@ public:
         }
     }
 
-private:
     struct Start {
         uint32_t node;
         size_t offset;  ///< of what names it
@@ -110,11 +121,24 @@ private:
     void visit(const Step& step, std::vector<Step>& open) {
         const Object node(context_.source, context_.tables.nodes.elements[step.node], "a node");
         context_.budget.grant_node();
-        const Affine world_from_node = step.world_from_parent * node_transform(context_, node);
+        const Affine world_from_node = step.world_from_parent * node_transform(context_, node, pose_of(step.node));
         if (!is_finite(world_from_node)) context_.source.fail(node.offset(), "the transform of this node overflows");
+        world_from_node_[step.node] = world_from_node;
+        order_.push_back(step.node);
+        const auto first = static_cast<std::ptrdiff_t>(open.size());
+        for (const Value child : node.array("children"))
+            push(open, read_reference(context_.source, child, "children", context_.tables.nodes), child.offset(),
+                 world_from_node);
+        std::reverse(open.begin() + first, open.end());
+    }
+
+    /// What the node holds.
+    void fill(uint32_t number) {
+        const Object node(context_.source, context_.tables.nodes.elements[number], "a node");
+        const Affine& world_from_node = *world_from_node_[number];
         const std::string name(node.string_or("name", ""));
         if (const auto mesh = node.reference("mesh", context_.tables.meshes))
-            place_mesh(node, *mesh, world_from_node, name);
+            place_mesh(node, *mesh, world_from_node, name, deformation(node, *mesh, pose_of(number)));
         if (const auto camera = node.reference("camera", context_.tables.cameras))
             place_camera(node, *camera, world_from_node, name);
         if (const auto punctual = node.extension("KHR_lights_punctual")) {
@@ -123,32 +147,60 @@ private:
             context_.budget.take(sizeof(Light) + shown.size(), context_.source, node.offset());
             context_.assets.add_light(placed(light.light, world_from_node), shown);
         }
-        const auto first = static_cast<std::ptrdiff_t>(open.size());
-        for (const Value child : node.array("children"))
-            push(open, read_reference(context_.source, child, "children", context_.tables.nodes), child.offset(),
-                 world_from_node);
-        std::reverse(open.begin() + first, open.end());
     }
 
-    void place_mesh(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name) {
-        if (node.has("skin")) context_.not_honoured("skins are not applied", node.offset_of("skin"));
-        if (const auto instancing = node.extension("EXT_mesh_gpu_instancing"))
-            for (const Affine& node_from_instance : read_instances(context_, accessors_, *instancing))
-                place_one(node, mesh, world_from_node * node_from_instance, name);
-        else
-            place_one(node, mesh, world_from_node, name);
+    const NodePose& pose_of(uint32_t node) const {
+        static const NodePose kAsWritten;
+        const auto found = pose_.find(node);
+        return found != pose_.end() ? found->second : kAsWritten;
     }
 
-    void place_one(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name) {
-        if (!usable_inverse(world_from_node)) {  // singular, or not finite
-            context_.warn("nodes that are scaled to nothing are not rendered", node.offset());
-            return;
+    /// Weights of an animation count before the node's, and those before the mesh's.
+    Deformation deformation(const Object& node, uint32_t mesh, const NodePose& pose) {
+        Deformation out;
+        const Meshes::Morphing& morphing = meshes_.morphing(mesh);
+        out.weights = pose.weights          ? *pose.weights
+                      : node.has("weights") ? read_weights(context_, node)
+                                            : morphing.weights;
+        if (!out.weights.empty() && out.weights.size() != morphing.targets)
+            context_.not_honoured("there are not as many weights as morph targets: what is missing is 0",
+                                  node.offset_of("weights"));
+        out.weights.resize(min_of(out.weights.size(), morphing.targets));
+        while (!out.weights.empty() && out.weights.back() == 0) out.weights.pop_back();
+        context_.budget.take(out.weights.size() * sizeof(double), context_.source, node.offset());
+        if (const auto skin = node.reference("skin", context_.tables.skins)) {
+            out.joints = skins_.joints(*skin, world_from_node_);
+            if (out.joints) out.skin = skin;
         }
-        const std::vector<Meshes::Part>& parts = meshes_.parts(mesh);
+        return out;
+    }
+
+    void place_mesh(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name,
+                    const Deformation& deformation) {
+        const auto instancing = node.extension("EXT_mesh_gpu_instancing");
+        if (instancing && deformation.joints)
+            context_.not_honoured("a mesh with a skin is there once, without its instances", instancing->offset());
+        if (instancing && !deformation.joints)
+            for (const Affine& node_from_instance : read_instances(context_, accessors_, *instancing))
+                place_one(node, mesh, world_from_node * node_from_instance, name, deformation);
+        else
+            place_one(node, mesh, world_from_node, name, deformation);
+    }
+
+    void place_one(const Object& node, uint32_t mesh, const Affine& world_from_node, const std::string& name,
+                   const Deformation& deformation) {
+        const bool has_place = usable_inverse(world_from_node).has_value();  // else singular, or not finite
+        const auto nowhere = [&] { context_.warn("nodes that are scaled to nothing are not rendered", node.offset()); };
+        if (!has_place && !deformation.joints) return nowhere();
+        const std::vector<Meshes::Part>& parts = meshes_.parts(mesh, deformation);
         context_.budget.take(parts.size() * (sizeof(Instance) + name.size()), context_.source, node.offset());
         for (const Meshes::Part& part : parts) {
-            const InstanceId instance =
-                context_.assets.add_instance({part.shape, part.look.material, world_from_node}, name);
+            if (!part.in_world && !has_place) {
+                nowhere();
+                continue;
+            }
+            const Affine& place = part.in_world ? Affine{} : world_from_node;
+            const InstanceId instance = context_.assets.add_instance({part.shape, part.look.material, place}, name);
             if (!is_black(part.look.emission)) {
                 context_.budget.take(sizeof(Light) + name.size(), context_.source, node.offset());
                 context_.assets.add_light(AreaLight{instance, part.look.emission, part.look.two_sided, 1}, name);
@@ -193,14 +245,18 @@ private:
     Context& context_;
     Accessors& accessors_;
     Meshes& meshes_;
+    Skins skins_;
+    const Pose& pose_;
     std::vector<bool> seen_;
     std::map<uint32_t, NamedLight> lights_;
     std::map<uint32_t, NamedCamera> cameras_;
+    Skins::Places world_from_node_;
+    std::vector<uint32_t> order_;  ///< of the nodes in the scene
 };
 
 }  // namespace
 
-Affine node_transform(Context& context, const Object& node) {
+Affine node_transform(Context& context, const Object& node, const NodePose& pose) {
     if (const auto matrix = node.numbers("matrix", 16, kNumber)) {
         for (const std::string_view key : {"translation", "rotation", "scale"})
             if (node.has(key))
@@ -210,11 +266,17 @@ Affine node_transform(Context& context, const Object& node) {
             context.source.fail(node.offset_of("matrix"), "the last row of a 'matrix' must be 0, 0, 0, 1");
         return from_columns(*matrix);
     }
-    const auto t = node.numbers("translation", 3, kNumber), s = node.numbers("scale", 3, kNumber);
-    Affine out = read_rotation(context, node);
-    if (s) out = out * scaling((*s)[0], (*s)[1], (*s)[2]);
-    if (t)
-        for (size_t row = 0; row < 3; ++row) out.m[row][3] = (*t)[row];
+    const auto vector = [&](std::string_view key, const std::optional<std::array<double, 3>>& animated,
+                            double fallback) {
+        if (animated) return *animated;
+        const auto v = node.numbers(key, 3, kNumber);
+        return v ? std::array{(*v)[0], (*v)[1], (*v)[2]} : std::array{fallback, fallback, fallback};
+    };
+    const auto t = vector("translation", pose.translation, 0), s = vector("scale", pose.scale, 1);
+    const auto& q = pose.rotation;
+    Affine out = q ? rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]) : read_rotation(context, node);
+    out = out * scaling(s[0], s[1], s[2]);
+    for (size_t row = 0; row < 3; ++row) out.m[row][3] = t[row];
     return out;
 }
 
@@ -260,8 +322,8 @@ std::vector<Affine> read_instances(Context& context, Accessors& accessors, const
     return out;
 }
 
-void place_nodes(Context& context, Accessors& accessors, Meshes& meshes, const Object& root) {
-    Placer(context, accessors, meshes).run(root);
+void place_nodes(Context& context, Accessors& accessors, Meshes& meshes, const Pose& pose, const Object& root) {
+    Placer(context, accessors, meshes, pose).run(root);
 }
 
 }  // namespace steradian::gltf
