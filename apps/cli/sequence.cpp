@@ -20,9 +20,9 @@ struct FrameRange {
 /// "7", "1:24" or "1-24", both ends included.
 Result<FrameRange> parse_frames(const std::string& text) {
     const auto wrong = [&] {
-        return usage_error(fmt::format("--frames: '{}' is not FIRST:LAST", escape_for_display(text)),
-                           fmt::format("whole numbers from 0 to {}, both included, for example --frames 1:48",
-                                       kLastFrame));
+        return usage_error(
+            fmt::format("--frames: '{}' is not FIRST:LAST", escape_for_display(text)),
+            fmt::format("whole numbers from 0 to {}, both included, for example --frames 1:48", kLastFrame));
     };
     const char* const end = text.data() + text.size();
     FrameRange out;
@@ -52,14 +52,16 @@ Result<std::vector<Shot>> parse_sequence(const SequenceOptions& o, const Setting
     if (!o.frames.empty() && o.turns) return usage_error("--frames and --turntable are two different rows of pictures");
     if (!o.frames.empty()) {
         if (settings.frame_time)
-            return usage_error("--frames says which moments are shown, and --frame-time does too", "leave one of them out");
+            return usage_error("--frames says which moments are shown, and --frame-time does too",
+                               "leave one of them out");
         const auto range = parse_frames(o.frames);
         if (!range) return range.error();
         const double fps = o.fps.value_or(kDefaultFps);
         for (uint32_t k = range->first; k <= range->last; ++k) out.push_back({k, k / fps, std::nullopt});
     } else if (o.turns) {
         if (settings.turn)
-            return usage_error("--turntable says how the model is turned, and --turn does too", "leave one of them out");
+            return usage_error("--turntable says how the model is turned, and --turn does too",
+                               "leave one of them out");
         for (uint32_t k = 0; k < *o.turns; ++k) out.push_back({k, std::nullopt, 360.0 * k / *o.turns});
     }
     return out;
@@ -94,10 +96,11 @@ void add_sequence_options(CLI::App* c, SequenceOptions& options) {
     add_real(c, "--fps", options.fps, 1e-3, 1e6, "Frames a second, for --frames")
         ->default_str(fmt::format("{}", kDefaultFps))
         ->group("Sequence");
-    add_count<uint32_t>(c, "--turntable", options.turns, 1, kMostTurns,
-                        "So many pictures of the model as it turns once about the vertical through its middle, in equal\n"
-                        "steps, counter-clockwise seen from above, with numbers from 0. The camera is chosen so that the\n"
-                        "model stays in view; it stands still, and so do the environment, the sun and the studio")
+    add_count<uint32_t>(
+        c, "--turntable", options.turns, 1, kMostTurns,
+        "So many pictures of the model as it turns once about the vertical through its middle, in equal\n"
+        "steps, counter-clockwise seen from above, with numbers from 0. The camera is chosen so that the\n"
+        "model stays in view; it stands still, and so do the environment, the sun and the studio")
         ->group("Sequence");
 }
 

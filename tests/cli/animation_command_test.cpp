@@ -16,18 +16,20 @@ protected:
         const int p = b.floats("VEC3", 3, kTriangle), t = b.floats("SCALAR", 1, {0, 1});
         const int v = b.floats("VEC3", 3, {-1, 0, 0, 1, 0, 0});
         const auto animation = [&](const std::string& name, const std::string& path) {
-            return "{\"name\": \"" + name + "\", \"samplers\": [{\"input\": " + std::to_string(t) + ", \"output\": " +
-                   std::to_string(v) + "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": \"" +
-                   path + "\"}}]}";
+            return "{\"name\": \"" + name + "\", \"samplers\": [{\"input\": " + std::to_string(t) +
+                   ", \"output\": " + std::to_string(v) +
+                   "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": \"" + path + "\"}}]}";
         };
-        spit(folder_.file("model.glb"),
-             b.binary("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
-                      "}}]}], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 1, \"znear\": 1}}], "
-                      "\"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [0, 0, 5]}], \"animations\": [" +
-                      animation("walk", "translation") + "," + animation("grow", "scale") + "]"));
+        spit(
+            folder_.file("model.glb"),
+            b.binary("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
+                     "}}]}], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 1, \"znear\": 1}}], "
+                     "\"nodes\": [{\"mesh\": 0}, {\"camera\": 0, \"translation\": [0, 0, 5]}], \"animations\": [" +
+                     animation("walk", "translation") + "," + animation("grow", "scale") + "]"));
     }
     Outcome render(std::vector<std::string> more) {
-        std::vector<std::string> all{"render", "model.glb", "--size", "24x16", "--spp", "2", "--env", "1,1,1", "--json"};
+        std::vector<std::string> all{"render", "model.glb", "--size", "24x16", "--spp",
+                                     "2",      "--env",     "1,1,1",  "--json"};
         all.insert(all.end(), more.begin(), more.end());
         return steradian(all);
     }
@@ -70,8 +72,8 @@ TEST_F(AnimationCommand, InfoNamesThem) {
 TEST_F(AnimationCommand, ReplayShowsTheSameMoment) {
     const std::vector<std::string> moment{"--animation", "walk", "--frame-time", "0.25"};
     const auto replay = [&](std::vector<std::string> more) {
-        std::vector<std::string> all{"replay", "model.glb", "--size", "24x16", "--env", "1,1,1", "--pixel", "11,7",
-                                     "--sample", "0"};
+        std::vector<std::string> all{"replay", "model.glb", "--size", "24x16",    "--env",
+                                     "1,1,1",  "--pixel",   "11,7",   "--sample", "0"};
         all.insert(all.end(), more.begin(), more.end());
         return steradian(all).out;
     };
@@ -85,13 +87,15 @@ TEST_F(AnimationCommand, ReplayShowsTheSameMoment) {
 // --- Sequences ---
 
 TEST_F(AnimationCommand, AFrameHasTheBitsOfItsMomentAlone) {
-    const Outcome o = render({"--animation", "walk", "--frames", "5:7", "--fps", "10", "-o", "f.exr", "-o", "g.###.png"});
+    const Outcome o =
+        render({"--animation", "walk", "--frames", "5:7", "--fps", "10", "-o", "f.exr", "-o", "g.###.png"});
     ASSERT_EQ(o.code, 0) << o.err;
     expect_files({"model.glb", "f_0005.exr", "f_0006.exr", "f_0007.exr", "g.005.png", "g.006.png", "g.007.png"});
     EXPECT_EQ(o.out.front(), '[');
     EXPECT_NE(o.err.find("frame 6, 0.6 s (2 of 3)"), std::string::npos) << o.err;
     std::vector<std::string> hashes;
-    for (const char* time : {"0.5", "0.6", "0.7"}) hashes.push_back(hash({"--animation", "walk", "--frame-time", time}));
+    for (const char* time : {"0.5", "0.6", "0.7"})
+        hashes.push_back(hash({"--animation", "walk", "--frame-time", time}));
     for (size_t i = 0; i < 3; ++i) {
         const auto image = read_image(folder_.file("f_000" + std::to_string(5 + i) + ".exr"));
         ASSERT_TRUE(image.ok());
@@ -114,11 +118,19 @@ TEST_F(AnimationCommand, WhatIsSaidOfEveryFrameIsSaidOnce) {
 }
 
 TEST_F(AnimationCommand, SequencesThatMakeNoSense) {
-    for (const std::vector<std::string>& wrong :
-         {std::vector<std::string>{"--frames", "7:5"}, {"--frames", "1:"}, {"--frames", "a"}, {"--frames", "1:2:3"},
-          {"--frames", "-1:2"}, {"--frames", "0:1000000"}, {"--fps", "24"}, {"--frames", "1:2", "--fps", "0"},
-          {"--frames", "1:2", "--frame-time", "1"}, {"--frames", "1:2", "--turntable", "3"}, {"--turntable", "0"},
-          {"--turntable", "2", "--turn", "10"}, {"--turntable", "2", "--camera", "0"}}) {
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--frames", "7:5"},
+                                                  {"--frames", "1:"},
+                                                  {"--frames", "a"},
+                                                  {"--frames", "1:2:3"},
+                                                  {"--frames", "-1:2"},
+                                                  {"--frames", "0:1000000"},
+                                                  {"--fps", "24"},
+                                                  {"--frames", "1:2", "--fps", "0"},
+                                                  {"--frames", "1:2", "--frame-time", "1"},
+                                                  {"--frames", "1:2", "--turntable", "3"},
+                                                  {"--turntable", "0"},
+                                                  {"--turntable", "2", "--turn", "10"},
+                                                  {"--turntable", "2", "--camera", "0"}}) {
         const Outcome o = render(wrong);
         EXPECT_EQ(o.code, 2) << wrong[1] << o.err;
         EXPECT_FALSE(o.err.empty());
@@ -129,8 +141,8 @@ TEST_F(AnimationCommand, SequencesThatMakeNoSense) {
 
 TEST_F(AnimationCommand, ASignalLeavesWholePicturesOnly) {
     spit(folder_.file("a_0001.exr"), "precious");
-    Process process(folder_, {"render", "model.glb", "--frames", "0:9", "--size", "24x16", "--spp", "1000000000", "--env",
-                              "1,1,1", "-o", "a.exr"});
+    Process process(folder_, {"render", "model.glb", "--frames", "0:9", "--size", "24x16", "--spp", "1000000000",
+                              "--env", "1,1,1", "-o", "a.exr"});
     ASSERT_TRUE(process.shows_progress());
     process.send(SIGINT);
     const Outcome o = process.wait();
@@ -153,7 +165,8 @@ TEST_F(AnimationCommand, ATurntableOfScenesOfEveryKind) {
         for (int k = 0; k < 4; ++k) {
             const auto image = read_image(folder_.file("t_000" + std::to_string(k) + ".pfm"));
             ASSERT_TRUE(image.ok());
-            EXPECT_EQ(image_hash(*image), field(run_with({"--turn", std::to_string(90 * k)}).out, "hash")) << scene << k;
+            EXPECT_EQ(image_hash(*image), field(run_with({"--turn", std::to_string(90 * k)}).out, "hash"))
+                << scene << k;
         }
     }
 }

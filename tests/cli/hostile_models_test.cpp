@@ -12,10 +12,11 @@ namespace {
 class HostileModels : public CommandTest {
 protected:
     /// `text` must be in the first line of the error; codes 3 and 4 are refusals, 0 where `accepted`.
-    void expect_cheap(const std::string& bytes, const std::string& text, bool accepted = false) {
+    void expect_cheap(const std::string& bytes, const std::string& text, bool accepted = false,
+                      const std::vector<std::string>& arguments = {"info", "model.glb"}) {
         SCOPED_TRACE(text);
         spit(folder_.file("model.glb"), bytes);
-        const Outcome o = steradian({"info", "model.glb"});
+        const Outcome o = steradian(arguments);
         EXPECT_EQ(o.signal, 0);
         const std::string line = o.err.substr(0, o.err.find('\n'));
         EXPECT_EQ(o.code == 3 || o.code == 4, !accepted) << o.code << o.err;
@@ -119,6 +120,51 @@ TEST_F(HostileModels, OneThingUsedOverAndOver) {
                           "{\"attributes\": {\"TRANSLATION\": " +
                           std::to_string(t) + "}}}}]"),
                  "(/nodes/0/extensions/EXT_mesh_gpu_instancing)");
+}
+
+TEST_F(HostileModels, MorphTargetsAndSkinsByTheThousand) {
+    // 20 000 targets that all name the same 50 000 differences.
+    GltfBuilder b;
+    const std::vector<float> many(150'000, 0.5f);
+    const std::string p = std::to_string(b.floats("VEC3", 3, many));
+    std::string targets, weights;
+    for (int i = 0; i < 20'000; ++i) {
+        targets += (i ? "," : "") + ("{\"POSITION\": " + p + "}");
+        weights += i ? ",1" : "1";
+    }
+    expect_cheap(
+        b.binary("\"meshes\": [{\"weights\": [" + weights + "], \"primitives\": [{\"attributes\": {\"POSITION\": " + p +
+                 "}, \"targets\": [" + targets + "]}]}], \"nodes\": [{\"mesh\": 0}]"),
+        "(/meshes/0/primitives/0/targets/");
+    // The same mesh on 10 000 nodes with a skin each.
+    GltfBuilder c;
+    const std::string q = std::to_string(c.floats("VEC3", 3, many)), zeros = "\"type\": \"VEC4\", \"count\": 50000, ";
+    const std::string joints = std::to_string(c.raw_accessor(zeros + "\"componentType\": 5121"));
+    const std::string parts = std::to_string(c.raw_accessor(zeros + "\"componentType\": 5126"));
+    std::string nodes, skins;
+    for (int i = 0; i < 10'000; ++i) {
+        nodes += ",{\"mesh\": 0, \"skin\": " + std::to_string(i) + "}";
+        skins += std::string(i ? "," : "") + "{\"joints\": [0]}";
+    }
+    expect_cheap(
+        c.binary("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + q + ", \"JOINTS_0\": " + joints +
+                 ", \"WEIGHTS_0\": " + parts + "}}]}], \"nodes\": [{}" + nodes + "], \"skins\": [" + skins + "]"),
+        "(/");
+}
+
+TEST_F(HostileModels, KeyframesByTheBillion) {
+    GltfBuilder b;
+    const std::string p = std::to_string(b.floats("VEC3", 3, kTriangle));
+    const std::string t =
+        std::to_string(b.raw_accessor("\"componentType\": 5126, \"type\": \"SCALAR\", \"count\": 4000000000"));
+    const std::string file = b.binary(
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + p +
+        "}}]}], \"nodes\": [{\"mesh\": 0}], \"animations\": [{\"samplers\": [{\"input\": " + t + ", \"output\": " + t +
+        "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": "
+        "\"weights\"}}]}]");
+    expect_cheap(file, "(/accessors/1)", false,
+                 {"replay", "model.glb", "--pixel", "0,0", "--sample", "0", "--frame-time", "1"});
+    expect_cheap(file, "", true);
 }
 
 TEST_F(HostileModels, Nesting) {

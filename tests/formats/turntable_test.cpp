@@ -84,7 +84,8 @@ TEST_F(Turntable, TheModelStaysInViewAndTouchesTheEdgeOnce) {
 }
 
 TEST_F(Turntable, WhatIsFarAwayStaysWithTheCamera) {
-    spit(folder_.file("scene.json"), R"({"version": 1, "cameras": {"front": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
+    spit(folder_.file("scene.json"),
+         R"({"version": 1, "cameras": {"front": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
       "materials": {"white": {"type": "diffuse", "reflectance": [0.8, 0.8, 0.8]}},
       "objects": [{"type": "sphere", "center": [3, 0, 0], "radius": 1, "material": "white"}],
       "lights": [{"type": "environment", "radiance": [1, 1, 1]},

@@ -17,8 +17,8 @@ struct Clip {
     std::string path = "translation", interpolation = "LINEAR";
     std::vector<float> times{1, 2, 4};
     std::vector<float> values{0, 0, 0, 1, 2, 3, 5, 2, -1};
-    std::string node{};   ///< more members of the node
-    std::string more{};   ///< further channels
+    std::string node{};  ///< more members of the node
+    std::string more{};  ///< further channels
     std::string type{"VEC3"};
 
     std::string text() const {
@@ -28,10 +28,14 @@ struct Clip {
     }
     std::string members(int positions, int input, int output) const {
         return "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(positions) +
-               "}}]}], \"nodes\": [{\"mesh\": 0" + node + "}, {}], \"animations\": [{\"name\": \"move\", \"samplers\": "
-               "[{\"input\": " + std::to_string(input) + ", \"output\": " + std::to_string(output) +
-               ", \"interpolation\": \"" + interpolation + "\"}], \"channels\": [{\"sampler\": 0, \"target\": "
-               "{\"node\": 0, \"path\": \"" + path + "\"}}" + more + "]}]";
+               "}}]}], \"nodes\": [{\"mesh\": 0" + node +
+               "}, {}], \"animations\": [{\"name\": \"move\", \"samplers\": "
+               "[{\"input\": " +
+               std::to_string(input) + ", \"output\": " + std::to_string(output) + ", \"interpolation\": \"" +
+               interpolation +
+               "\"}], \"channels\": [{\"sampler\": 0, \"target\": "
+               "{\"node\": 0, \"path\": \"" +
+               path + "\"}}" + more + "]}]";
     }
 };
 
@@ -97,10 +101,8 @@ TEST(GltfAnimation, RotationsGoAlongTheShorterArcAtAConstantSpeed) {
     const float c = std::sqrt(0.5f);
     // From 0 to 90 degrees about z in one second: 30 degrees after a third. -q is the same rotation as q.
     for (const float sign : {1.0f, -1.0f}) {
-        const Clip clip{.path = "rotation",
-                        .times = {0, 1},
-                        .values = {0, 0, 0, 1, 0, 0, sign * c, sign * c},
-                        .type = "VEC4"};
+        const Clip clip{
+            .path = "rotation", .times = {0, 1}, .values = {0, 0, 0, 1, 0, 0, sign * c, sign * c}, .type = "VEC4"};
         const double angle = std::numbers::pi / 6;
         expect_near(moved(clip.text(), 1.0 / 3, {2, 0, 5}), {2 * std::cos(angle), 2 * std::sin(angle), 5}, 1e-6);
     }
@@ -139,9 +141,10 @@ TEST(GltfAnimation, NormalisedIntegersAndSparseValues) {
     const std::string index("\1\0\3\0", 4);
     const std::vector<float> values{1, 2, 3, 4, 5, 6};
     const int i = b.view(index), s = b.view({reinterpret_cast<const char*>(values.data()), 24});
-    const int v = b.raw_accessor("\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4, \"sparse\": {\"count\": 2, "
-                                 "\"indices\": {\"bufferView\": " + std::to_string(i) +
-                                 ", \"componentType\": 5123}, \"values\": {\"bufferView\": " + std::to_string(s) + "}}");
+    const int v = b.raw_accessor(
+        "\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 4, \"sparse\": {\"count\": 2, "
+        "\"indices\": {\"bufferView\": " +
+        std::to_string(i) + ", \"componentType\": 5123}, \"values\": {\"bufferView\": " + std::to_string(s) + "}}");
     const std::string file = b.text(Clip{}.members(p, t, v));
     expect_near(moved(file, 0, {}), {0, 0, 0});
     expect_near(moved(file, 1, {}), {1, 2, 3});
@@ -167,8 +170,9 @@ TEST(GltfAnimation, ChildrenAndCamerasMoveAlong) {
         b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
                "}}]}], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 1, \"znear\": 1}}], "
                "\"nodes\": [{\"children\": [1, 2]}, {\"mesh\": 0, \"translation\": [0, 1, 0]}, {\"camera\": 0}], "
-               "\"animations\": [{\"samplers\": [{\"input\": " + std::to_string(t) + ", \"output\": " +
-               std::to_string(v) + "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": "
+               "\"animations\": [{\"samplers\": [{\"input\": " +
+               std::to_string(t) + ", \"output\": " + std::to_string(v) +
+               "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": "
                "\"translation\"}}]}]"),
         at(0.25));
     expect_near(transform_point(loaded.scene.instances.at(0).world_from_object, Vec3{}), {2, 1, 0});
@@ -182,9 +186,12 @@ TEST(GltfAnimation, OneOfSeveralByNameOrNumber) {
     std::string animations;
     for (int i = 0; i < 3; ++i) {
         const auto x = static_cast<float>(i + 1);
-        animations += std::string(i ? "," : "") + "{\"name\": \"" + (i == 2 ? "1" : i ? "run" : "walk") +
-                      "\", \"samplers\": [{\"input\": " + std::to_string(t) + ", \"output\": " +
-                      std::to_string(b.floats("VEC3", 3, {x, 0, 0})) +
+        animations += std::string(i ? "," : "") + "{\"name\": \"" +
+                      (i == 2 ? "1"
+                       : i    ? "run"
+                              : "walk") +
+                      "\", \"samplers\": [{\"input\": " + std::to_string(t) +
+                      ", \"output\": " + std::to_string(b.floats("VEC3", 3, {x, 0, 0})) +
                       "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": \"translation\"}}]}";
     }
     const std::string file = b.text(one_mesh(p, "", ", \"animations\": [" + animations + "]"));
@@ -225,9 +232,9 @@ TEST(GltfAnimation, WhatHasNoEffectIsReported) {
                     "'KHR_animation_pointer'"));
     EXPECT_TRUE(has(report({.more = channel("{\"node\": 0, \"path\": \"translation\"}")}).diagnostics, "first one"));
     EXPECT_TRUE(has(report({.times = {1, 1, 2}}).diagnostics, "same time"));
-    EXPECT_TRUE(has(report({.path = "rotation", .times = {1, 3}, .values = {0, 0, 0, 0, 0, 0, 0, 1}, .type = "VEC4"})
-                        .diagnostics,
-                    "unit length"));
+    EXPECT_TRUE(has(
+        report({.path = "rotation", .times = {1, 3}, .values = {0, 0, 0, 0, 0, 0, 0, 1}, .type = "VEC4"}).diagnostics,
+        "unit length"));
 }
 
 TEST(GltfAnimation, FaultsAreRefusedWithTheirPlace) {

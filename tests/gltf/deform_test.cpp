@@ -34,7 +34,8 @@ std::string target(int positions) { return "{\"POSITION\": " + std::to_string(po
 
 TEST(GltfMorph, TargetsAddUpByTheirWeights) {
     GltfBuilder b;
-    const int first = b.floats("VEC3", 3, {2, 0, 0, 0, 4, 0, 0, 0, 8}), second = b.floats("VEC3", 3, {1, 1, 1, 1, 1, 1, 0, 0, 0});
+    const int first = b.floats("VEC3", 3, {2, 0, 0, 0, 4, 0, 0, 0, 8}),
+              second = b.floats("VEC3", 3, {1, 1, 1, 1, 1, 1, 0, 0, 0});
     const std::string targets = target(first) + "," + target(second);
     const auto mesh = [&](const std::string& of_mesh, const std::string& of_node) {
         GltfBuilder copy = b;
@@ -51,7 +52,8 @@ TEST(GltfMorph, TargetsAddUpByTheirWeights) {
 TEST(GltfMorph, NodesShareAMeshUnlessTheirWeightsDiffer) {
     GltfBuilder b;
     const std::string one = target(b.floats("VEC3", 3, {2, 0, 0, 0, 4, 0, 0, 0, 8}));
-    const LoadedScene loaded = good_gltf(morphed(b, one, ", \"weights\": [1]", ", \"weights\": [0.5]}, {\"mesh\": 0}, "
+    const LoadedScene loaded = good_gltf(morphed(b, one, ", \"weights\": [1]",
+                                                 ", \"weights\": [0.5]}, {\"mesh\": 0}, "
                                                  "{\"mesh\": 0, \"weights\": [0.5]"));
     EXPECT_EQ(loaded.scene.instances.size(), 3u);
     ASSERT_EQ(loaded.scene.meshes.size(), 2u);
@@ -65,8 +67,10 @@ TEST(GltfMorph, SparseAndQuantisedDifferences) {
     const std::vector<float> moved{10, 20, 30};
     const int index = b.view(std::string("\1", 1)), value = b.view({reinterpret_cast<const char*>(moved.data()), 12});
     const int sparse = b.raw_accessor(
-        "\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3, \"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": " +
-        std::to_string(index) + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + std::to_string(value) + "}}");
+        "\"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3, \"sparse\": {\"count\": 1, \"indices\": "
+        "{\"bufferView\": " +
+        std::to_string(index) + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + std::to_string(value) +
+        "}}");
     const int bytes = b.accessor<int8_t>("VEC3", 5120, 3, {127, 0, -127, 0, 0, 0, 0, 127, 0}, ", \"normalized\": true");
     const int shorts = b.accessor<int16_t>("VEC3", 5122, 3, {1, 2, 3, -4, 5, 6, 7, 8, 9});
     const std::string targets = target(sparse) + "," + target(bytes) + "," + target(shorts);
@@ -78,9 +82,10 @@ TEST(GltfMorph, SparseAndQuantisedDifferences) {
     const int i = c.view(std::string("\1", 1)), v = c.view({reinterpret_cast<const char*>(moved.data()), 12});
     const int under = c.view({reinterpret_cast<const char*>(dense.data()), 36});
     const int both = c.raw_accessor(
-        "\"bufferView\": " + std::to_string(under) + ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3, "
-        "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": " + std::to_string(i) +
-        ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + std::to_string(v) + "}}");
+        "\"bufferView\": " + std::to_string(under) +
+        ", \"componentType\": 5126, \"type\": \"VEC3\", \"count\": 3, "
+        "\"sparse\": {\"count\": 1, \"indices\": {\"bufferView\": " +
+        std::to_string(i) + ", \"componentType\": 5121}, \"values\": {\"bufferView\": " + std::to_string(v) + "}}");
     expect_vertices(good_gltf(morphed(c, target(both), ", \"weights\": [1]")).scene.meshes.at(0),
                     {{1, 1, 1}, {11, 20, 30}, {3, 4, 3}});
 }
@@ -90,14 +95,19 @@ TEST(GltfMorph, NormalsTangentsCoordinatesAndColours) {
     const int n = b.floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
     const int t = b.floats("VEC4", 4, {1, 0, 0, -1, 1, 0, 0, 1, 1, 0, 0, 1});
     const int uv = b.floats("VEC2", 2, {0, 0, 1, 0, 0, 1}), color = b.floats("VEC4", 4, std::vector<float>(12, 0.5f));
-    const int dn = b.floats("VEC3", 3, {6, 0, 7, 0, 0, 0, 0, 0, 0}), dt = b.floats("VEC3", 3, {5, 8, 0, 0, 0, 0, 0, 0, 0});
+    const int dn = b.floats("VEC3", 3, {6, 0, 7, 0, 0, 0, 0, 0, 0}),
+              dt = b.floats("VEC3", 3, {5, 8, 0, 0, 0, 0, 0, 0, 0});
     const int duv = b.floats("VEC2", 2, {1, 2, 0, 0, 0, 0});
     const int dc = b.floats("VEC4", 4, {0.5f, -0.5f, 2, -0.25f, 0, 0, 0, 0, 0, 0, 0, 0});
-    const LoadedScene loaded = good_gltf(morphed(
-        b, "{\"NORMAL\": " + std::to_string(dn) + entry("TANGENT", dt) + entry("TEXCOORD_0", duv) + entry("COLOR_0", dc) + "}",
-        ", \"weights\": [0.5]", "",
-        entry("NORMAL", n) + entry("TANGENT", t) + entry("TEXCOORD_0", uv) + entry("COLOR_0", color) + "}, \"material\": 0, \"extras\": {",
-        ", \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"alphaMode\": \"BLEND\", \"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}}]"));
+    const LoadedScene loaded = good_gltf(
+        morphed(b,
+                "{\"NORMAL\": " + std::to_string(dn) + entry("TANGENT", dt) + entry("TEXCOORD_0", duv) +
+                    entry("COLOR_0", dc) + "}",
+                ", \"weights\": [0.5]", "",
+                entry("NORMAL", n) + entry("TANGENT", t) + entry("TEXCOORD_0", uv) + entry("COLOR_0", color) +
+                    "}, \"material\": 0, \"extras\": {",
+                ", \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"alphaMode\": \"BLEND\", "
+                "\"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}}]"));
     const Mesh& m = loaded.scene.meshes.at(0);
     // (3, 0, 1 + 3.5) and (1 + 2.5, 4, 0), as unit vectors.
     const double ln = std::hypot(3, 4.5), lt = std::hypot(3.5, 4);
@@ -117,7 +127,8 @@ TEST(GltfMorph, NormalsTangentsCoordinatesAndColours) {
 
 TEST(GltfMorph, AnimatedWeights) {
     GltfBuilder b;
-    const int first = b.floats("VEC3", 3, {2, 0, 0, 0, 4, 0, 0, 0, 8}), second = b.floats("VEC3", 3, {1, 1, 1, 1, 1, 1, 0, 0, 0});
+    const int first = b.floats("VEC3", 3, {2, 0, 0, 0, 4, 0, 0, 0, 8}),
+              second = b.floats("VEC3", 3, {1, 1, 1, 1, 1, 1, 0, 0, 0});
     const int t = b.floats("SCALAR", 1, {0, 1});
     const int linear = b.floats("SCALAR", 1, {0, 1, 1, 3});
     // Tangents towards the keyframe, values, tangents away from it; for both weights each.
@@ -125,7 +136,8 @@ TEST(GltfMorph, AnimatedWeights) {
     const int shorts = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 65535, 65535, 0}, ", \"normalized\": true");
     const auto animation = [&](int values, const std::string& interpolation) {
         return "{\"samplers\": [{\"input\": " + std::to_string(t) + ", \"output\": " + std::to_string(values) +
-               ", \"interpolation\": \"" + interpolation + "\"}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": "
+               ", \"interpolation\": \"" + interpolation +
+               "\"}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": "
                "0, \"path\": \"weights\"}}]}";
     };
     const std::string file = morphed(b, target(first) + "," + target(second), "", ", \"weights\": [7, 7]", "",
@@ -147,12 +159,14 @@ TEST(GltfMorph, AnimatedWeights) {
 
 TEST(GltfMorph, MissingNormalsAreThoseOfTheMorphedTriangles) {
     GltfBuilder b;
-    const LoadedScene loaded = good_gltf(morphed(b, target(b.floats("VEC3", 3, {0, 0, 1, 0, 0, 0, 0, 0, 0})) , ", \"weights\": [1]"));
+    const LoadedScene loaded =
+        good_gltf(morphed(b, target(b.floats("VEC3", 3, {0, 0, 1, 0, 0, 0, 0, 0, 0})), ", \"weights\": [1]"));
     EXPECT_TRUE(loaded.scene.meshes.at(0).normals.empty());
 }
 
 TEST(GltfMorph, FaultsAreRefusedOrReported) {
-    const auto with = [](const std::string& kind, size_t components, const std::vector<float>& values, const std::string& name) {
+    const auto with = [](const std::string& kind, size_t components, const std::vector<float>& values,
+                         const std::string& name) {
         GltfBuilder b;
         const int a = b.floats(kind, components, values);
         return morphed(b, "{\"" + name + "\": " + std::to_string(a) + "}", ", \"weights\": [1]");
@@ -165,7 +179,8 @@ TEST(GltfMorph, FaultsAreRefusedOrReported) {
     expect_refused(morphed(b, "{\"POSITION\": 9}", ", \"weights\": [1]"), place + "/POSITION", "accessor 9");
     expect_refused(morphed(b, target(d), ", \"weights\": [\"a\"]"), "/meshes/0/weights/0", "weights");
     EXPECT_TRUE(has(good_gltf(morphed(b, target(d), ", \"weights\": [1, 2]")).fidelity, "not as many weights"));
-    EXPECT_TRUE(has(good_gltf(morphed(b, target(d) + "," + target(d), ", \"weights\": [1]")).fidelity, "not as many weights"));
+    EXPECT_TRUE(
+        has(good_gltf(morphed(b, target(d) + "," + target(d), ", \"weights\": [1]")).fidelity, "not as many weights"));
     // Differences that are not finite make positions that are not: their triangles are dropped later.
     EXPECT_TRUE(load_gltf(with("VEC3", 3, {kNan, 0, 0, 0, 0, 0, 0, 0, 0}, "POSITION")).ok());
 }
@@ -178,20 +193,23 @@ struct Rig {
     std::vector<uint8_t> joints{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     std::vector<float> weights{1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0, 0.5f, 0.5f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     /// Of the upper joint, column by column: what takes the height of 1 to its origin.
-    std::vector<float> inverse{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
+    std::vector<float> inverse{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
+                               1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
     std::string mesh_node = ", \"translation\": [100, 0, 0]";
     std::string lower = "\"children\": [2]", upper = "\"translation\": [0, 1, 0]";
     std::string joint_list = "[1, 2]", scene = "[0, 1]", more{}, attributes{}, primitive{}, mesh{};
     GltfBuilder b{};
 
     std::string text() {
-        const int p = b.floats("VEC3", 3, positions), w = b.floats("VEC4", 4, weights), m = b.floats("MAT4", 16, inverse);
+        const int p = b.floats("VEC3", 3, positions), w = b.floats("VEC4", 4, weights),
+                  m = b.floats("MAT4", 16, inverse);
         const int j = b.accessor<uint8_t>("VEC4", 5121, 4, joints);
         const int i = b.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 5, 4});
         return b.text("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
-                      entry("JOINTS_0", j) + entry("WEIGHTS_0", w) + attributes + "}, \"indices\": " + std::to_string(i) +
-                      primitive + "}]" + mesh + "}], \"nodes\": [{\"mesh\": 0, \"skin\": 0" + mesh_node + "}, {" + lower + "}, {" +
-                      upper + "}], \"scenes\": [{\"nodes\": " + scene + "}], \"skins\": [{\"joints\": " + joint_list +
+                      entry("JOINTS_0", j) + entry("WEIGHTS_0", w) + attributes +
+                      "}, \"indices\": " + std::to_string(i) + primitive + "}]" + mesh +
+                      "}], \"nodes\": [{\"mesh\": 0, \"skin\": 0" + mesh_node + "}, {" + lower + "}, {" + upper +
+                      "}], \"scenes\": [{\"nodes\": " + scene + "}], \"skins\": [{\"joints\": " + joint_list +
                       ", \"inverseBindMatrices\": " + std::to_string(m) + "}]" + more);
     }
 };
@@ -228,7 +246,8 @@ TEST(GltfSkin, JointsAreAnimatedAndMorphsComeFirst) {
     const int d = rig.b.floats("VEC3", 3, lifted);
     rig.primitive = ", \"targets\": [" + target(d) + "]";
     rig.mesh = ", \"weights\": [0.5]";
-    rig.more = ", \"animations\": [{\"samplers\": [{\"input\": " + std::to_string(t) + ", \"output\": " + std::to_string(q) +
+    rig.more = ", \"animations\": [{\"samplers\": [{\"input\": " + std::to_string(t) +
+               ", \"output\": " + std::to_string(q) +
                "}], \"channels\": [{\"sampler\": 0, \"target\": {\"node\": 2, \"path\": \"rotation\"}}]}]";
     LoadOptions options;
     options.frame_time = 1;
@@ -238,16 +257,20 @@ TEST(GltfSkin, JointsAreAnimatedAndMorphsComeFirst) {
 }
 
 TEST(GltfSkin, NormalsTangentsAndSides) {
-    // Joints that scale x by 4 and mirror y. A normal (1, 1, 0) / sqrt 2 becomes (1/4, -1, 0), a tangent (1, -1, 0) / sqrt 2
-    // becomes (4, 1, 0); the bitangent's side changes, and so does the order of corners.
+    // Joints that scale x by 4 and mirror y. A normal (1, 1, 0) / sqrt 2 becomes (1/4, -1, 0), a tangent (1, -1, 0) /
+    // sqrt 2 becomes (4, 1, 0); the bitangent's side changes, and so does the order of corners.
     Rig rig{.lower = "\"children\": [2], \"scale\": [4, -1, 1]"};
     const float h = std::sqrt(0.5f);
     std::vector<float> normals, tangents;
-    for (int i = 0; i < 6; ++i) normals.insert(normals.end(), {h, h, 0}), tangents.insert(tangents.end(), {h, -h, 0, 1});
-    rig.attributes = entry("NORMAL", rig.b.floats("VEC3", 3, normals)) + entry("TANGENT", rig.b.floats("VEC4", 4, tangents)) +
+    for (int i = 0; i < 6; ++i)
+        normals.insert(normals.end(), {h, h, 0}), tangents.insert(tangents.end(), {h, -h, 0, 1});
+    rig.attributes = entry("NORMAL", rig.b.floats("VEC3", 3, normals)) +
+                     entry("TANGENT", rig.b.floats("VEC4", 4, tangents)) +
                      entry("TEXCOORD_0", rig.b.floats("VEC2", 2, std::vector<float>(12, 0.5f)));
     rig.primitive = ", \"material\": 0";
-    rig.more = ", \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"extensions\": {\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}}]";
+    rig.more =
+        ", \"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5}, \"extensions\": "
+        "{\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}}}]";
     const LoadedScene loaded = good_gltf(rig.text());
     const Mesh& m = loaded.scene.meshes.at(0);
     const double ln = std::hypot(0.25, 1), lt = std::hypot(4, 1);
@@ -265,7 +288,8 @@ TEST(GltfSkin, WeightsAreTakenAsPartsOfTheirSum) {
     Rig rig{.upper = "\"translation\": [0, 3, 0]"};  // 2 above where it was bound
     for (float& w : rig.weights) w *= 3;
     const LoadedScene loaded = good_gltf(rig.text());
-    expect_vertices(loaded.scene.meshes.at(0), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0}, {0, 4, 0}, {1, 4, 0}}, 1e-6);
+    expect_vertices(loaded.scene.meshes.at(0), {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 2, 0}, {0, 4, 0}, {1, 4, 0}},
+                    1e-6);
     EXPECT_TRUE(has(loaded.fidelity, "parts of their sum"));
     Rig none{.lower = "\"children\": [2], \"translation\": [0, 0, 1]"};
     std::fill(none.weights.begin(), none.weights.end(), 0.0f);
@@ -306,7 +330,8 @@ TEST(GltfSkin, TwoSkinsMakeTwoMeshesOfOne) {
         text.replace(text.find(a), a.size(), b);
     };
     replace("\"nodes\": [{\"mesh\": 0", "\"nodes\": [{\"mesh\": 0, \"name\": \"a\"");
-    replace("}], \"scenes\": [{\"nodes\": [0, 1]", "}, {\"mesh\": 0, \"skin\": 1}, {\"mesh\": 0}, {\"translation\": [0, 0, 5], "
+    replace("}], \"scenes\": [{\"nodes\": [0, 1]",
+            "}, {\"mesh\": 0, \"skin\": 1}, {\"mesh\": 0}, {\"translation\": [0, 0, 5], "
             "\"children\": [6]}, {\"translation\": [0, 1, 0]}], \"scenes\": [{\"nodes\": [0, 1, 3, 4, 5]");
     replace("\"skins\": [", "\"skins\": [{\"joints\": [1, 2]}, {\"joints\": [5, 6]}, ");
     const LoadedScene loaded = good_gltf(text);

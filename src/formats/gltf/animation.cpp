@@ -59,7 +59,8 @@ public:
     }
 
     Pose read() {
-        for (const Value value : animation_.array("channels")) read_channel(Object(context_.source, value, "a channel"));
+        for (const Value value : animation_.array("channels"))
+            read_channel(Object(context_.source, value, "a channel"));
         return std::move(pose_);
     }
 
@@ -99,7 +100,9 @@ private:
             case Path::scale:
                 return put(pose.scale, vector);
             case Path::rotation:
-                return put(pose.rotation, [](const std::vector<double>& v) { return normalized({v[0], v[1], v[2], v[3]}); });
+                return put(pose.rotation, [](const std::vector<double>& v) {
+                    return normalized({v[0], v[1], v[2], v[3]});
+                });
             case Path::weights:
                 return put(pose.weights, [](std::vector<double> v) { return v; });
         }
@@ -117,10 +120,11 @@ private:
         bool twice = false;
         for (size_t i = 0; i < times.size(); ++i) {
             if (!std::isfinite(times[i]) || (i > 0 && times[i] < times[i - 1]))
-                context_.source.fail(accessor.offset,
-                                     "the times of keyframes must increase, but that of number " + std::to_string(i) +
-                                         (std::isfinite(times[i]) ? " is before the one of number " + std::to_string(i - 1)
-                                                                  : " is not finite"));
+                context_.source.fail(
+                    accessor.offset,
+                    "the times of keyframes must increase, but that of number " + std::to_string(i) +
+                        (std::isfinite(times[i]) ? " is before the one of number " + std::to_string(i - 1)
+                                                 : " is not finite"));
             twice = twice || (i > 0 && times[i] == times[i - 1]);
         }
         if (twice) context_.warn("two keyframes are at the same time: the animation jumps", accessor.offset);
@@ -143,14 +147,14 @@ private:
             context_.source.fail(sampler.offset_of("output"),
                                  "the values of " + quoted(kPaths[static_cast<size_t>(path)]) + " must be " +
                                      (components == 1 ? "scalars" : "vectors of " + std::to_string(components)) +
-                                     " of FLOAT" + (may_be_whole ? ", or of normalised integers with at most 16 bits" : ""));
+                                     " of FLOAT" +
+                                     (may_be_whole ? ", or of normalised integers with at most 16 bits" : ""));
         const uint64_t keys = uint64_t(out.times.size()) * out.parts();
         out.width = components == 1 ? values.count / keys : components;
         if (out.width == 0 || values.count * components != keys * out.width)
-            context_.source.fail(sampler.offset_of("output"),
-                                 std::to_string(values.count) + " values do not fit " +
-                                     std::to_string(out.times.size()) + " keyframes" +
-                                     (out.parts() == 3 ? " with tangents" : ""));
+            context_.source.fail(sampler.offset_of("output"), std::to_string(values.count) + " values do not fit " +
+                                                                  std::to_string(out.times.size()) + " keyframes" +
+                                                                  (out.parts() == 3 ? " with tangents" : ""));
         context_.budget.take(out.width * sizeof(double), context_.source, sampler.offset());
         return out;
     }
@@ -160,7 +164,8 @@ private:
         const uint32_t components = curve.values.components;
         const double x = curve.values.element(at / components, static_cast<uint32_t>(at % components));
         if (!std::isfinite(x))
-            context_.source.fail(curve.values.offset, "keyframe " + std::to_string(key) + " of an animation is not finite");
+            context_.source.fail(curve.values.offset,
+                                 "keyframe " + std::to_string(key) + " of an animation is not finite");
         return x;
     }
 
@@ -186,7 +191,8 @@ private:
         if (next == 0) return value(curve, 0);
         const size_t key = next - 1;
         if (next == times.size() || curve.interpolation == Interpolation::step) return value(curve, key);
-        const double begin = times[key], length = static_cast<double>(times[next]) - begin, t = (time_ - begin) / length;
+        const double begin = times[key], length = static_cast<double>(times[next]) - begin,
+                     t = (time_ - begin) / length;
         if (curve.interpolation == Interpolation::cubic_spline) return spline(curve, key, t, length);
         std::vector<double> a = value(curve, key);
         const std::vector<double> b = value(curve, next);

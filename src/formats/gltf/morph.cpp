@@ -84,7 +84,8 @@ std::vector<MorphTarget> morph_targets(const Context& context, const Object& pri
         const auto accessor = [&](std::string_view name) {
             return target.reference(name, context.tables.accessors).value_or(MorphTarget::kNone);
         };
-        MorphTarget made{weights[i], accessor("POSITION"), accessor("NORMAL"), accessor("TANGENT"), accessor("COLOR_0")};
+        MorphTarget made{weights[i], accessor("POSITION"), accessor("NORMAL"), accessor("TANGENT"),
+                         accessor("COLOR_0")};
         for (uint32_t set = 0; set < kMaxUvSets; ++set) made.uvs[set] = accessor("TEXCOORD_" + std::to_string(set));
         made.offset = target.offset();
         out.push_back(made);

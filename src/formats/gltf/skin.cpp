@@ -54,14 +54,13 @@ public:
             const std::string set = std::to_string(n);
             const Accessor& j = accessors.open(influences[n].joints);
             const Accessor& w = accessors.open(influences[n].weights);
-            Set& made = sets_.emplace_back(Set{j, w, attributes.offset_of("JOINTS_" + set),
-                                               attributes.offset_of("WEIGHTS_" + set)});
+            Set& made = sets_.emplace_back(
+                Set{j, w, attributes.offset_of("JOINTS_" + set), attributes.offset_of("WEIGHTS_" + set)});
             const bool narrow = j.component == ComponentType::u8 || j.component == ComponentType::u16;
             if (j.components != 4 || !narrow || j.normalized)
-                context.source.fail(made.joints_offset, "'JOINTS_" + set +
-                                                            "' must be vectors of 4 UNSIGNED_BYTE or UNSIGNED_SHORT");
-            const bool unorm =
-                w.normalized && (w.component == ComponentType::u8 || w.component == ComponentType::u16);
+                context.source.fail(made.joints_offset,
+                                    "'JOINTS_" + set + "' must be vectors of 4 UNSIGNED_BYTE or UNSIGNED_SHORT");
+            const bool unorm = w.normalized && (w.component == ComponentType::u8 || w.component == ComponentType::u16);
             if (w.components != 4 || !(unorm || w.component == ComponentType::f32))
                 context.source.fail(made.weights_offset, "'WEIGHTS_" + set +
                                                              "' must be vectors of 4 floats, or of normalised "
@@ -185,7 +184,8 @@ std::vector<Influences> influences_of(Context& context, const Object& attributes
             context.source.fail(attributes.offset(), "there is " + quoted(j ? joints : weights) + ", but no " +
                                                          quoted(j ? weights : joints));
         if (n == kMaxInfluences) {
-            context.not_honoured("only the first 8 sets of joints of a vertex are looked at", attributes.offset_of(joints));
+            context.not_honoured("only the first 8 sets of joints of a vertex are looked at",
+                                 attributes.offset_of(joints));
             return out;
         }
         out.push_back({*j, *w});
@@ -201,8 +201,7 @@ void skin(Context& context, Accessors& accessors, const Object& attributes, cons
         mirrored[i] = determinant(place) < 0;
         const double side = mirrored[i] ? -1 : 1;
         mesh.positions[i] = Vec3(transform_point(place, mesh.positions[i]));
-        if (!mesh.normals.empty())
-            mesh.normals[i] = Vec3(normalize(by_cofactors(place, mesh.normals[i]) * side));
+        if (!mesh.normals.empty()) mesh.normals[i] = Vec3(normalize(by_cofactors(place, mesh.normals[i]) * side));
         if (mesh.tangents.empty()) continue;
         Tangent& t = mesh.tangents[i];
         t.direction = Vec3(normalize(transform_vector(place, t.direction)));
