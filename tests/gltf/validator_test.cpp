@@ -1,5 +1,5 @@
-// The files of Khronos' glTF validator, each with the faults that it finds. What becomes of each kind of fault is the table
-// of docs/gltf-validation.md, which STERADIAN_WRITE_TABLES=1 writes anew.
+// The files of Khronos' glTF validator, each with the faults that it finds. What becomes of each kind of fault is the
+// table of docs/gltf-validation.md, which STERADIAN_WRITE_TABLES=1 writes anew.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -36,7 +36,8 @@ struct Row {
 };
 
 std::string table_of(const std::map<std::string, Row>& rows) {
-    std::string out = "| code | files | refused | loaded with a warning | loaded without |\n| --- | --- | --- | --- | --- |\n";
+    std::string out =
+        "| code | files | refused | loaded with a warning | loaded without |\n| --- | --- | --- | --- | --- |\n";
     for (const auto& [code, row] : rows) {
         out += "| " + code;
         for (const size_t n : {row.files, row.refused, row.warned, row.files - row.refused - row.warned})
@@ -49,8 +50,8 @@ std::string table_of(const std::map<std::string, Row>& rows) {
 /// An empty scene is what most of these files are.
 bool has_warnings(const LoadedScene& loaded) {
     const auto tells = [](const Warning& w) { return w.message != "the scene has nothing to render"; };
-    return !loaded.fidelity.empty() || std::any_of(loaded.diagnostics.warnings().begin(),
-                                                   loaded.diagnostics.warnings().end(), tells);
+    return !loaded.fidelity.empty() ||
+           std::any_of(loaded.diagnostics.warnings().begin(), loaded.diagnostics.warnings().end(), tells);
 }
 
 std::vector<std::string> models_in(const std::filesystem::path& folder) {

@@ -143,7 +143,7 @@ private:
         const bool whole = values.normalized && values.component != ComponentType::u32;
         const uint32_t components = path == Path::weights ? 1 : path == Path::rotation ? 4 : 3;
         const bool may_be_whole = path == Path::weights || path == Path::rotation;
-        if (values.components != components || !(real || (may_be_whole && whole)))
+        if (!values.has_vectors_of(components) || !(real || (may_be_whole && whole)))
             context_.source.fail(sampler.offset_of("output"),
                                  "the values of " + quoted(kPaths[static_cast<size_t>(path)]) + " must be " +
                                      (components == 1 ? "scalars" : "vectors of " + std::to_string(components)) +

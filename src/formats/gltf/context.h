@@ -40,8 +40,8 @@ public:
     void grant(std::span<const std::byte> used);
     /// These bytes were made, not read: grant() counts them for nothing.
     void disown(std::span<const std::byte> made) { cover(made); }
-    /// A node, which takes some bytes of text, is placed: the rest of the text counts for nothing.
-    void grant_node() noexcept { read_ += kNodeBytes; }
+    /// So many nodes, each of which takes some bytes of text: the rest of the text counts for nothing.
+    void grant_nodes(uint64_t count) noexcept { read_ += count * kNodeBytes; }
 
     /// Fails at `offset` when there is no more. Call them before the memory is taken.
     void take(uint64_t bytes, const Source& source, size_t offset);

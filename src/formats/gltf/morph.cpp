@@ -40,7 +40,7 @@ private:
     }
     void add(const Accessor& a, std::string_view name, const MorphTarget& target) {
         const bool color = components_ == 4;
-        if (a.component == ComponentType::u32 || !(a.components == components_ || (color && a.components == 3)))
+        if (a.component == ComponentType::u32 || !(a.has_vectors_of(components_) || (color && a.has_vectors_of(3))))
             context_.source.fail(target.offset, quoted(name) + " of a morph target must be vectors of " +
                                                     (color ? "3 or 4" : std::to_string(components_)) +
                                                     " floats, or of integers with at most 16 bits");

@@ -49,6 +49,7 @@ public:
     /// Where every node is comes first: skins look at others than their own.
     void run(const Object& root) {
         const size_t nodes = context_.tables.nodes.elements.size();
+        context_.budget.grant_nodes(nodes);
         context_.budget.take(nodes * (sizeof(Skins::Places::value_type) + sizeof(uint32_t)), context_.source,
                              root.offset());
         seen_.assign(nodes, false);
@@ -120,7 +121,6 @@ private:
 
     void visit(const Step& step, std::vector<Step>& open) {
         const Object node(context_.source, context_.tables.nodes.elements[step.node], "a node");
-        context_.budget.grant_node();
         const Affine world_from_node = step.world_from_parent * node_transform(context_, node, pose_of(step.node));
         if (!is_finite(world_from_node)) context_.source.fail(node.offset(), "the transform of this node overflows");
         world_from_node_[step.node] = world_from_node;

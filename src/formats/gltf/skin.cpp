@@ -57,11 +57,11 @@ public:
             Set& made = sets_.emplace_back(
                 Set{j, w, attributes.offset_of("JOINTS_" + set), attributes.offset_of("WEIGHTS_" + set)});
             const bool narrow = j.component == ComponentType::u8 || j.component == ComponentType::u16;
-            if (j.components != 4 || !narrow || j.normalized)
+            if (!j.has_vectors_of(4) || !narrow || j.normalized)
                 context.source.fail(made.joints_offset,
                                     "'JOINTS_" + set + "' must be vectors of 4 UNSIGNED_BYTE or UNSIGNED_SHORT");
             const bool unorm = w.normalized && (w.component == ComponentType::u8 || w.component == ComponentType::u16);
-            if (w.components != 4 || !(unorm || w.component == ComponentType::f32))
+            if (!w.has_vectors_of(4) || !(unorm || w.component == ComponentType::f32))
                 context.source.fail(made.weights_offset, "'WEIGHTS_" + set +
                                                              "' must be vectors of 4 floats, or of normalised "
                                                              "UNSIGNED_BYTE or UNSIGNED_SHORT");
