@@ -256,6 +256,33 @@ TEST(GltfMaterial, ColourFactorsOutsideTheirRangeAreClamped) {
     EXPECT_EQ(absorbs.transmission_color.value, (Rgb{1, 0.25f, 0}));
 }
 
+TEST(GltfMaterial, IridescenceIsAThinFilm) {
+    const auto with = [](const std::string& members) {
+        return with_material(
+            "\"pbrMetallicRoughness\": {\"metallicFactor\": 1, \"roughnessFactor\": 0}, \"extensions\": "
+            "{\"KHR_materials_iridescence\": {" +
+            members + "}}");
+    };
+    const auto film = material_of<OpenPbrMaterial>(
+        with("\"iridescenceFactor\": 0.5, \"iridescenceIor\": 1.8, \"iridescenceThicknessMinimum\": 200, "
+             "\"iridescenceThicknessMaximum\": 550"));
+    EXPECT_EQ(film.thin_film_weight, 0.5f);
+    EXPECT_EQ(film.thin_film_ior, 1.8f);
+    EXPECT_EQ(film.thin_film_thickness, 0.55f);
+    const auto by_default = material_of<OpenPbrMaterial>(with("\"iridescenceFactor\": 1"));
+    EXPECT_EQ(by_default.thin_film_ior, 1.3f);
+    EXPECT_EQ(by_default.thin_film_thickness, 0.4f);
+    (void)material_of<ConductorMaterial>(with("\"iridescenceIor\": 1.8"));  // no film
+    const LoadedScene beyond = with(
+        "\"iridescenceFactor\": 1, \"iridescenceIor\": 0.5, \"iridescenceThicknessMaximum\": 1e6, "
+        "\"iridescenceThicknessTexture\": {\"index\": 0}");
+    const auto clamped = material_of<OpenPbrMaterial>(beyond);
+    EXPECT_EQ(clamped.thin_film_ior, 1);
+    EXPECT_EQ(clamped.thin_film_thickness, 10);
+    for (const char* said : {"10 micrometres", "index of a film", "iridescenceThicknessMaximum"})
+        EXPECT_TRUE(has(beyond.fidelity, said)) << said;
+}
+
 TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
     const std::string start = "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0, \"metallicFactor\": ";
     EXPECT_EQ(material_of<ConductorMaterial>(with_material(start + "1}")).roughness.value, (Vec2{0, 0}));

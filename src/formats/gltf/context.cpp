@@ -10,13 +10,14 @@ namespace steradian::gltf {
 namespace {
 
 /// What can be required of us: all of it is honoured, or reported where it is not.
-constexpr std::array<std::string_view, 18> kExtensions{"KHR_draco_mesh_compression",
+constexpr std::array<std::string_view, 19> kExtensions{"KHR_draco_mesh_compression",
                                                        "KHR_lights_punctual",
                                                        "KHR_materials_anisotropy",
                                                        "KHR_materials_clearcoat",
                                                        "KHR_materials_diffuse_transmission",
                                                        "KHR_materials_emissive_strength",
                                                        "KHR_materials_ior",
+                                                       "KHR_materials_iridescence",
                                                        "KHR_materials_sheen",
                                                        "KHR_materials_specular",
                                                        "KHR_materials_transmission",

@@ -116,6 +116,27 @@ void Materials::read_anisotropy(const Object& anisotropy, Reading& r) {
     no_texture(anisotropy, "anisotropyTexture");
 }
 
+/// As OpenPBR's thin film, which lies where the extension has it: on the base, below the coat.
+void Materials::read_iridescence(const Object& iridescence, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    s.thin_film_weight = unit(iridescence, "iridescenceFactor", 0);
+    if (s.thin_film_weight == 0) return;
+    constexpr double kNanometre = 1e-3, kThickest = 10, kLargest = 3;
+    const double thickness = iridescence.number_or("iridescenceThicknessMaximum", 400, kNotNegative) * kNanometre;
+    const double ior = iridescence.number_or("iridescenceIor", 1.3, kNotNegative);
+    if (thickness > kThickest)
+        context_.not_honoured("a film of more than 10 micrometres is as thick as that",
+                              iridescence.offset_of("iridescenceThicknessMaximum"));
+    if (ior < 1 || ior > kLargest)
+        context_.not_honoured("an index of a film beyond 1 to 3 is taken as the nearer one",
+                              iridescence.offset_of("iridescenceIor"));
+    s.thin_film_thickness = static_cast<float>(min_of(thickness, kThickest));
+    s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, kLargest));
+    no_texture(iridescence, "iridescenceTexture");
+    if (const auto value = iridescence.find("iridescenceThicknessTexture"))
+        context_.not_honoured("films are as thick everywhere as 'iridescenceThicknessMaximum' says", value->offset());
+}
+
 void Materials::read_diffuse_transmission(const Object& extension, Reading& r) {
     const float factor = unit(extension, "diffuseTransmissionFactor", 0);
     if (factor == 0) return;
@@ -146,6 +167,7 @@ void Materials::read_extensions(const Object& material, Reading& r) {
     if (const auto coat = material.extension("KHR_materials_clearcoat")) read_clearcoat(*coat, r);
     if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
     if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);
+    if (const auto iridescence = material.extension("KHR_materials_iridescence")) read_iridescence(*iridescence, r);
     if (const auto diffuse = material.extension("KHR_materials_diffuse_transmission"))
         read_diffuse_transmission(*diffuse, r);
     if (!r.solid && r.surface.transmission_weight.value > 0) {

@@ -69,6 +69,7 @@ private:
     void read_clearcoat(const Object& clearcoat, Reading& r);
     void read_sheen(const Object& sheen, Reading& r);
     void read_anisotropy(const Object& anisotropy, Reading& r);
+    void read_iridescence(const Object& iridescence, Reading& r);
     void read_diffuse_transmission(const Object& extension, Reading& r);
 
     Context& context_;
