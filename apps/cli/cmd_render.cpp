@@ -126,6 +126,18 @@ void write_sample(JsonWriter& w, const RenderOptions& o, const PixelSample& s) {
     w.EndObject();
 }
 
+void write_error_report(JsonWriter& w, const RenderSettings& s, const ErrorReport& e) {
+    w.Key("error"), w.StartObject();
+    w.Key("target"), w.Double(double(s.target_error));
+    w.Key("estimate"), w.Double(e.estimate);
+    // What is not finite is no number in JSON.
+    if (std::isfinite(e.bound)) w.Key("bound"), w.Double(e.bound);
+    w.Key("confidence"), w.Double(ErrorReport::confidence);
+    w.Key("certified"), w.Bool(e.certified);
+    if (!e.certified) write_field(w, "reason", e.reason);
+    w.EndObject();
+}
+
 void print_json(const RenderOptions& o, const RenderSettings& s, const RenderResult& r,
                 const std::vector<std::string>& written, const Diagnostics& diagnostics, const Diagnostics& fidelity) {
     rapidjson::StringBuffer buffer;
@@ -142,7 +154,9 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     number("spp", r.out_of_time ? r.min_samples : s.samples_per_pixel);
     w.Key("complete"), w.Bool(r.complete);
     w.Key("out_of_time"), w.Bool(r.out_of_time);
+    if (r.error) write_error_report(w, s, *r.error);
     number("min_samples", r.min_samples), number("max_samples", r.max_samples);
+    w.Key("mean_samples"), w.Double(r.mean_samples);
     number("samples", r.statistics.samples);
     number("camera_rays", r.statistics.camera_rays);
     number("bounce_rays", r.statistics.bounce_rays);
@@ -171,16 +185,32 @@ void print_json(const RenderOptions& o, const RenderSettings& s, const RenderRes
     std::cout << buffer.GetString() << '\n';
 }
 
+std::string samples_text(const RenderSettings& s, const RenderResult& r) {
+    if (r.complete && r.min_samples == r.max_samples) return fmt::format("{} samples", r.min_samples);
+    if (s.target_error > 0)
+        return fmt::format("{} to {}, on average {:.1f} samples", r.min_samples, r.max_samples, r.mean_samples);
+    return partial_samples(s, r.min_samples, r.max_samples);
+}
+
+void print_error_report(const RenderSettings& s, const RenderResult& r) {
+    if (!r.error) return;
+    const ErrorReport& e = *r.error;
+    std::cerr << (e.certified
+                      ? fmt::format("target error {} reached: with {:.0f} % confidence at most {:.4g}, about {:.4g}\n",
+                                    s.target_error, 100 * ErrorReport::confidence, e.bound, e.estimate)
+                      : fmt::format("target error {} not certified (about {:.4g} was reached): {}\n", s.target_error,
+                                    e.estimate, e.reason));
+}
+
 void print_summary(const RenderSettings& s, const RenderResult& r, const std::vector<std::string>& written) {
     const uint64_t rays = r.statistics.camera_rays + r.statistics.bounce_rays + r.statistics.shadow_rays;
     const double seconds = std::max(r.statistics.seconds, 1e-9);
     std::string outputs;
     for (const std::string& path : written) outputs += (outputs.empty() ? "" : ", ") + escape_for_display(path, 4096);
-    std::cerr << fmt::format(
-        "{}x{}, {} per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
-        r.complete ? fmt::format("{} samples", r.min_samples) : partial_samples(s, r.min_samples, r.max_samples),
-        format_duration(seconds), format_quantity(double(rays) / seconds), r.statistics.threads,
-        r.statistics.threads == 1 ? "" : "s", outputs.empty() ? "" : " -> ", outputs);
+    std::cerr << fmt::format("{}x{}, {} per pixel in {} ({} rays/s, {} thread{}){}{}\n", r.image.width, r.image.height,
+                             samples_text(s, r), format_duration(seconds), format_quantity(double(rays) / seconds),
+                             r.statistics.threads, r.statistics.threads == 1 ? "" : "s", outputs.empty() ? "" : " -> ",
+                             outputs);
 }
 
 void warn_bad_samples(const RenderOptions& o, const RenderStatistics& s, Diagnostics& diagnostics) {
@@ -275,15 +305,18 @@ int finish(const RenderOptions& o, const RenderSettings& settings, const RenderR
     warn_bad_samples(o, result.statistics, afterwards);
     const std::vector<std::string> written = write_outputs(o, result.image, afterwards);
     if (!o.quiet) {
-        report(afterwards), print_summary(settings, result, written), print_fireflies(o, result.statistics);
-        print_fidelity(fidelity, said);
+        report(afterwards), print_summary(settings, result, written);
+        print_fireflies(o, result.statistics), print_fidelity(fidelity, said);
     }
+    const bool missed = result.error && !result.error->certified;
+    if (!o.quiet || missed) print_error_report(settings, result);
     diagnostics.append(afterwards);
     if (o.json) said.next_json(), print_json(o, settings, result, written, diagnostics, fidelity);
     if (auto status = finish_stdout(); !status) return report(status.error());
     if (written.size() < o.outputs.size()) return kResources;
     const int signal = g_signal.load();
-    return signal != 0 ? 128 + signal : kDone;
+    if (signal != 0) return 128 + signal;
+    return missed ? kResources : kDone;
 }
 
 /// Their names over lines of the help.

@@ -105,6 +105,12 @@ void override(const SettingsOptions& o, const Overrides& said, RenderSettings& s
     if (o.roulette_depth) s.roulette_depth = *o.roulette_depth;
     if (o.ao_distance) s.ao_distance = *o.ao_distance;
     if (o.clamp) s.clamp = *o.clamp;
+    if (o.target_error) {
+        // The scene's number of samples is meant for pictures with a target, or for those without.
+        if (!o.spp && (s.target_error > 0) != (*o.target_error > 0))
+            s.samples_per_pixel = *o.target_error > 0 ? kDefaultMostSamples : RenderSettings().samples_per_pixel;
+        s.target_error = *o.target_error;
+    }
     if (!o.integrator.empty()) s.integrator = *find_name<IntegratorKind>(o.integrator);
     if (!o.light_sampling.empty()) s.light_sampling = *find_name<LightSampling>(o.light_sampling);
     if (!o.light_choice.empty()) s.light_choice = *find_name<LightChoice>(o.light_choice);
@@ -282,6 +288,7 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     number("--roulette-depth", o.roulette_depth);
     number("--clamp", o.clamp);
     number("--ao-distance", o.ao_distance);
+    number("--target-error", o.target_error);
     word("--filter", o.filter);
     word("--sampler", o.sampler);
     number("--seed", o.seed);
@@ -292,10 +299,16 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
     add_count<uint64_t>(c, "--spp", options.spp, 1, kMaxSamplesPerPixel,
                         "Samples per pixel; the noise falls with their square root")
         ->group("Picture");
+    add_real(c, "--target-error", options.target_error, 0, kMaxTargetError,
+             "Samples each part of the picture until √mean(Var / (I + 0.01)²) is at most this with 95 % confidence,\n"
+             "for example 0.05, and says in the file what was reached, or why that cannot be said (exit code 4);\n"
+             "--spp is then the most samples of a pixel (default 65536). Needs 6 / target² pixels. 0: no target")
+        ->group("Picture");
     c->add_option("--size", options.size, "Pixels, for example 1920x1080")->type_name("WIDTHxHEIGHT")->group("Picture");
     c->add_option("--crop", options.crop,
                   "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
-                  "bits as in the whole picture; 'all' undoes the scene's crop")
+                  "bits as in the whole picture (but with --target-error, which is for what is rendered);\n"
+                  "'all' undoes the scene's crop")
         ->type_name("X0,Y0,X1,Y1")
         ->group("Picture");
     c->add_option("--camera", options.camera, "Name or number of the camera")->type_name("NAME")->group("Picture");

@@ -15,7 +15,7 @@ inline constexpr uint32_t kMaxThreads = 1024;
 struct SettingsOptions {
     std::optional<uint64_t> spp, seed;
     std::optional<uint32_t> max_depth, roulette_depth;
-    std::optional<float> clamp, ao_distance;
+    std::optional<float> clamp, ao_distance, target_error;
     std::string size, camera, integrator, light_sampling, light_choice, filter, sampler, crop;
     std::string environment;
     std::optional<double> environment_rotation, environment_scale;

@@ -48,7 +48,7 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
 
 struct RenderProgress {
     uint64_t samples_done = 0;   ///< camera samples finished, over all pixels
-    uint64_t samples_total = 0;  ///< by the end; with a time limit an estimate
+    uint64_t samples_total = 0;  ///< by the end; with a time limit or a target an estimate
     uint64_t rays = 0;           ///< traced so far, shadow rays included
     double seconds = 0;          ///< since the job started
 };
@@ -76,12 +76,25 @@ struct RenderStatistics {
     double seconds = 0;
 };
 
+/// What is known of the error √mean(Var / (I + 0.01)²) of a picture that was rendered up to a target, over pixels and
+/// channels (docs/decisions/0016).
+struct ErrorReport {
+    double estimate = 0;
+    double bound = 0;        ///< no claim unless `certified`; may be infinite
+    bool certified = false;  ///< in `confidence` of all cases this picture's error is at most `bound`, which is at most
+                             ///< the target
+    std::string reason;      ///< why not: a sentence's part, in English
+    static constexpr double confidence = 0.95;
+};
+
 struct RenderResult {
     /// R, G, B of the crop window (or the whole picture) and the AOVs that were asked for, with metadata.
     Image image;
     bool complete = true;  ///< false after a cancel: `image` holds what was done, each pixel over its own sample count
     uint64_t min_samples = 0, max_samples = 0;  ///< per pixel
+    double mean_samples = 0;                    ///< of all pixels; there may have been more that do not count
     bool out_of_time = false;  ///< Execution::time_limit ended it; it is complete, with fewer samples than were allowed
+    std::optional<ErrorReport> error;  ///< where RenderSettings::target_error asked for one, once it is complete
     RenderStatistics statistics;
 };
 

@@ -99,7 +99,20 @@ struct RenderSettings {
     Filter filter;
     uint32_t camera = 0;  ///< index into Scene::cameras
     AovSet aovs;          ///< of `path` and `direct`; the colour stays the same to the bit
+    /// The error √mean(Var / (I + 0.01)²) over pixels and channels up to which the picture is sampled, each 8 × 8
+    /// pixels as much as they need; 0: all pixels alike. samples_per_pixel is then the most that a pixel gets. Samples
+    /// are spread over kReplicates independent sequences, so such a picture is another one than without a target. Not
+    /// together with Execution::time_limit, for what a pixel gets must not depend on the time, nor with AOVs.
+    float target_error = 0;
 };
+
+/// Sequences of a pixel from which the error is estimated: sample i belongs to number i mod kReplicates.
+inline constexpr uint32_t kReplicates = 8;
+inline constexpr double kMinTargetError = 1e-5, kMaxTargetError = 10;
+/// The most samples of a pixel where there is a target and nobody says how many.
+inline constexpr uint64_t kDefaultMostSamples = 65536;
+/// At least two for each replicate.
+inline constexpr uint64_t kLeastMostSamples = 2 * kReplicates;
 
 inline constexpr uint64_t kMaxSamplesPerPixel = 1'000'000'000;
 inline constexpr uint32_t kMaxDepth = 65535;  ///< bounces

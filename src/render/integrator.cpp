@@ -41,6 +41,10 @@ const Row& row(IntegratorKind kind) { return kIntegrators[static_cast<size_t>(ki
 
 }  // namespace
 
+Sampler sampler_of(const RenderSettings& settings) {
+    return Sampler(settings.sampler, settings.seed, settings.target_error > 0 ? kReplicates : 1);
+}
+
 Result<CameraSampler> camera_of(const RenderScene& scene, const RenderSettings& settings) {
     const auto& cameras = scene.shading.scene.cameras;
     if (settings.camera < cameras.size())
@@ -74,10 +78,14 @@ void Counters::good(const PixelSample& sample) {
     if (fireflies.size() > fireflies_wanted) fireflies.pop_back();
 }
 
-void Counters::add(const Counters& other) {
+void Counters::add_rays(const Counters& other) {
     camera_rays += other.camera_rays;
     bounce_rays += other.bounce_rays;
     shadow_rays += other.shadow_rays;
+}
+
+void Counters::add(const Counters& other) {
+    add_rays(other);
     const uint64_t bad_total = bad_samples + other.bad_samples;
     if (other.first_bad_sample) bad(*other.first_bad_sample);
     bad_samples = bad_total;

@@ -22,7 +22,14 @@ class Recorder;
 struct WorkUnit {
     TileRect tile;
     uint64_t first_sample = 0;
-    uint32_t samples = 0;  ///< at most kBlockSamples
+    uint32_t samples = 0;
+    /// Sample i of a pixel belongs to its replicate i mod all_replicates. The samples of this unit are of `replicates`
+    /// of them, from first_replicate on, and first_sample counts those only. Each replicate has a sum of its own.
+    uint32_t replicates = 1, first_replicate = 0, all_replicates = 1;
+    /// The index in its pixel of what is sample n by that count.
+    uint64_t index(uint64_t n) const noexcept {
+        return n / replicates * all_replicates + first_replicate + n % replicates;
+    }
 };
 
 /// What a worker counts; added up at the end.
@@ -37,6 +44,7 @@ struct Counters {
     void bad(const PixelSample& sample);
     void good(const PixelSample& sample);
     void add(const Counters& other);
+    void add_rays(const Counters& other);
 };
 
 /// Everything that is the same for all units of a job.
@@ -56,12 +64,15 @@ struct RenderContext {
 class Integrator {
 public:
     virtual ~Integrator() = default;
-    /// Adds the unit's samples to the sums of its tile, each pixel's in ascending order.
+    /// Adds the unit's samples to the sums of its tile, in ascending order to each sum. `color` has one for each pixel
+    /// and replicate, row by row.
     /// False when the job was cancelled on the way; the sums are then worthless. May throw std::bad_alloc, as sums of
     /// mattes have no bound.
     virtual bool render(const WorkUnit& unit, TileSums& sums, Counters& counters) = 0;
 };
 
+/// The sampler that the settings name.
+Sampler sampler_of(const RenderSettings& settings);
 /// The camera that the settings name; `usage` when the scene has no such camera, bad_input for a degenerate one.
 Result<CameraSampler> camera_of(const RenderScene& scene, const RenderSettings& settings);
 

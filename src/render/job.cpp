@@ -1,6 +1,6 @@
 // The one driver: checks the settings, hands (tile × block) units to the workers block by block over the whole frame,
-// and folds what they bring into the film. With a time limit there are many passes, each of some samples for all
-// pixels.
+// and folds what they bring into the film. With a time limit or a target for the error there are many passes, each of
+// some samples for all pixels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "render/adaptive_film.h"
 #include "render/cryptomatte.h"
 #include "render/film.h"
 #include "render/integrator.h"
@@ -39,6 +40,13 @@ Status check(const RenderSettings& s, const Execution& e) {
     if (!(e.time_limit == 0 || (e.time_limit >= kMinTimeLimit && e.time_limit <= kMaxTimeLimit)))
         return settings_error(fmt::format("a time limit of {} seconds: expected {} to {}, or 0 for none", e.time_limit,
                                           kMinTimeLimit, kMaxTimeLimit));
+    if (e.time_limit > 0 && s.target_error > 0)
+        return settings_error(
+            "a time limit and a target for the error: one of them, so that time does not decide how "
+            "many samples a pixel has");
+    if (!s.aovs.empty() && s.target_error > 0)
+        return settings_error(
+            "AOVs and a target for the error: one of them, for the film of a target has colours only");
     return check_picture_memory(s, e);
 }
 
@@ -50,17 +58,20 @@ public:
           settings_(settings),
           execution_(execution),
           window_(window_of(settings)),
-          film_(window_, execution.tile_size, settings.aovs),
+          film_(settings.target_error > 0 ? Crop{} : window_, execution.tile_size, settings.aovs),
           context_{*scene_,
                    settings_,
                    camera,
                    FilterSampler(settings.filter),
-                   Sampler(settings.sampler, settings.seed),
+                   sampler_of(settings),
                    cancelled_,
                    rays_,
                    nullptr,
                    MatteIds(scene_->shading.scene, settings.aovs)},
-          blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {}
+          blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {
+        if (settings.target_error > 0)
+            adaptive_.emplace(window_, double(settings.target_error), settings.samples_per_pixel);
+    }
 
     ~Job() override {
         cancel();
@@ -124,13 +135,15 @@ public:
         }
         auto image = snapshot();
         if (!image) return std::move(image).error();
-        const Film::Range samples = film_.samples_per_pixel();
+        const AdaptiveFilm::Samples samples = samples_per_pixel();
         RenderResult result;
         result.image = std::move(*image);
         result.min_samples = samples.min;
         result.max_samples = samples.max;
-        result.complete = passes_.ended() || samples.min == settings_.samples_per_pixel;
+        result.mean_samples = double(samples.total) / double(pixels());
+        result.complete = passes_.ended() || (!adaptive_ && samples.min == settings_.samples_per_pixel);
         result.out_of_time = out_of_time_;
+        result.error = report();
         result.statistics = statistics();
         return result;
     }
@@ -138,15 +151,29 @@ public:
 private:
     uint64_t pixels() const { return uint64_t(window_.x1 - window_.x0) * (window_.y1 - window_.y0); }
 
+    AdaptiveFilm::Samples samples_per_pixel() const {
+        if (adaptive_) return adaptive_->samples();
+        const Film::Range range = film_.samples_per_pixel();
+        return {range.min, range.max, samples_done_.load()};
+    }
+    std::optional<ErrorReport> report() const {
+        if (!adaptive_ || !passes_.ended()) return std::nullopt;
+        return adaptive_->report();
+    }
+
     Image picture() const {
         // What ran out of time is the whole picture of so many samples.
         const bool whole = passes_.ended() && out_of_time_;
-        Image image = film_.develop();
-        const Film::Range samples = film_.samples_per_pixel();
+        const std::optional<ErrorReport> error = report();
+        Image image = adaptive_ ? adaptive_->develop() : film_.develop();
+        const AdaptiveFilm::Samples samples = samples_per_pixel();
         RenderSettings made_of = settings_;
         if (whole) made_of.samples_per_pixel = samples.min;
         image.metadata = picture_metadata(made_of, scene_->hash, samples.min, samples.max);
         image.metadata.merge(matte_metadata(scene_->shading.scene, settings_.aovs));
+        if (adaptive_)
+            image.metadata.merge(
+                target_metadata(settings_, samples.max, double(samples.total) / double(pixels()), error));
         return image;
     }
 
@@ -171,8 +198,9 @@ private:
         try {
             counters = Counters(execution_.fireflies);
             passes_.run([&](uint64_t unit) {
-                const bool done =
-                    timed() ? render_part(integrator, unit, counters) : render_unit(integrator, unit, counters);
+                const bool done = adaptive_ ? render_adaptive(integrator, unit, counters)
+                                  : timed() ? render_part(integrator, unit, counters)
+                                            : render_unit(integrator, unit, counters);
                 took_part |= done;
                 return done;
             });
@@ -193,6 +221,7 @@ private:
 
     /// How many units the next pass has.
     uint64_t begin_pass() {
+        if (adaptive_) return begin_adaptive_pass();
         if (timed()) return begin_timed_pass();
         return std::exchange(first_sample_, settings_.samples_per_pixel) == 0 ? blocks_ * film_.tiles() : 0;
     }
@@ -214,6 +243,12 @@ private:
         return film_.tiles();
     }
 
+    uint64_t begin_adaptive_pass() {
+        if (!adaptive_->begin_pass()) return 0;
+        samples_planned_ = samples_done_.load() + adaptive_->samples_to_come();
+        return adaptive_->units();
+    }
+
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
     /// How many more camera samples there is time for, at the speed so far.
@@ -225,6 +260,7 @@ private:
     uint64_t samples_expected() const {
         const uint64_t done = samples_done_.load(), most = pixels() * settings_.samples_per_pixel;
         if (passes_.ended()) return done;
+        if (adaptive_) return samples_planned_.load();
         if (!timed() || done == 0) return most;
         return done + static_cast<uint64_t>(min_of(max_of(samples_in_time(), 0.0), double(most - done)));
     }
@@ -235,6 +271,19 @@ private:
         TileSums sums = film_.open_sums(tile);
         if (!integrator.render(work, sums, counters)) return false;
         film_.extend(tile, work.samples, std::move(sums));
+        samples_done_ += uint64_t(work.samples) * work.tile.pixels();
+        return true;
+    }
+
+    bool render_adaptive(Integrator& integrator, uint64_t unit, Counters& counters) {
+        const WorkUnit& work = adaptive_->work(unit);
+        TileSums sums;
+        sums.color = adaptive_->sums(unit);
+        // What is rendered a second time has had its report.
+        Counters again;
+        if (!integrator.render(work, sums, adaptive_->again(unit) ? again : counters)) return false;
+        counters.add_rays(again);
+        adaptive_->commit(unit, std::move(sums.color));
         samples_done_ += uint64_t(work.samples) * work.tile.pixels();
         return true;
     }
@@ -281,7 +330,9 @@ private:
     const uint64_t blocks_;
     const Clock::time_point begin_ = Clock::now();
 
+    std::optional<AdaptiveFilm> adaptive_;  ///< instead of film_, where there is a target
     std::atomic<uint64_t> samples_done_{0};
+    std::atomic<uint64_t> samples_planned_{0};  ///< by the end, towards a target
     std::atomic<bool> out_of_time_{false};
     uint64_t first_sample_ = 0;  ///< of the pass under way
     uint32_t samples_ = 0;       ///< of each pixel in it, where there is a time limit

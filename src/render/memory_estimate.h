@@ -5,16 +5,18 @@
 #include <cstdint>
 
 #include "base/parallel.h"
+#include "render/adaptive_film.h"
 #include "steradian/render.h"
 
 namespace steradian {
 
 inline Crop window_of(const RenderSettings& s) { return s.crop.value_or(Crop{0, 0, s.width, s.height}); }
 
-/// Pixels of the largest tile, once the window has cut it.
+/// Pixels of the largest unit of work, once the window has cut it.
 inline uint32_t largest_tile(const RenderSettings& s, const Execution& e) {
     const Crop window = window_of(s);
-    return std::min(e.tile_size, window.x1 - window.x0) * std::min(e.tile_size, window.y1 - window.y0);
+    const uint32_t tile = std::min(e.tile_size, window.x1 - window.x0) * std::min(e.tile_size, window.y1 - window.y0);
+    return s.target_error > 0 ? std::max(tile, AdaptiveFilm::kCellSize * AdaptiveFilm::kCellSize) : tile;
 }
 
 inline uint32_t workers_of(const Execution& e) { return e.threads ? e.threads : hardware_threads(); }

@@ -37,7 +37,25 @@ std::map<std::string, std::string> picture_metadata(const RenderSettings& s, con
     m["steradian:seed"] = fmt::format("{}", s.seed);
     m["steradian:filter"] = fmt::format("{} {}", name_of(s.filter.kind), s.filter.radius);
     m["steradian:samples"] = fmt::format("{}", min_samples);
-    if (min_samples != s.samples_per_pixel) m["steradian:partial"] = partial_samples(s, min_samples, max_samples);
+    if (s.target_error == 0 && min_samples != s.samples_per_pixel)
+        m["steradian:partial"] = partial_samples(s, min_samples, max_samples);
+    return m;
+}
+
+std::map<std::string, std::string> target_metadata(const RenderSettings& s, uint64_t max_samples, double mean_samples,
+                                                   const std::optional<ErrorReport>& report) {
+    std::map<std::string, std::string> m;
+    m["steradian:target_error"] = fmt::format("{}", s.target_error);
+    m["steradian:mean_samples"] = fmt::format("{:.1f}", mean_samples);
+    m["steradian:max_samples"] = fmt::format("{}", max_samples);
+    if (!report) {
+        m["steradian:partial"] = "stopped before the target";
+        return m;
+    }
+    m["steradian:error_estimate"] = fmt::format("{:.4g}", report->estimate);
+    m["steradian:certified"] = report->certified ? fmt::format("yes: error at most {:.4g} with {:.0f} % confidence",
+                                                               report->bound, 100 * ErrorReport::confidence)
+                                                 : "no: " + report->reason;
     return m;
 }
 

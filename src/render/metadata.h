@@ -2,8 +2,10 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
+#include "steradian/render.h"
 #include "steradian/settings.h"
 
 namespace steradian {
@@ -12,5 +14,8 @@ namespace steradian {
 std::string partial_samples(const RenderSettings& settings, uint64_t min_samples, uint64_t max_samples);
 std::map<std::string, std::string> picture_metadata(const RenderSettings& settings, const std::string& scene_hash,
                                                     uint64_t min_samples, uint64_t max_samples);
+/// What a picture with a target for its error says of it besides; `report` once it is there.
+std::map<std::string, std::string> target_metadata(const RenderSettings& settings, uint64_t max_samples,
+                                                   double mean_samples, const std::optional<ErrorReport>& report);
 
 }  // namespace steradian

@@ -49,7 +49,7 @@ Result<SampleTrace> replay(const std::shared_ptr<const RenderScene>& scene, cons
         RenderSettings colour_only = settings;
         colour_only.aovs = {};
         const RenderContext context{
-            *scene,    colour_only, *camera,  FilterSampler(settings.filter), Sampler(settings.sampler, settings.seed),
+            *scene,    colour_only, *camera,  FilterSampler(settings.filter), sampler_of(settings),
             cancelled, rays,        &recorder};
         Counters counters;
         TileSums sums(1, {});

@@ -58,7 +58,7 @@ bool WavefrontIntegrator::render(const WorkUnit& unit, TileSums& sums, Counters&
             advance(depth);
             if (stopped()) return false;
         }
-        accumulate(pixels * samples, sums);
+        accumulate(unit, pixels * samples, sums);
     }
     return true;
 }
@@ -86,7 +86,7 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         path.pixel = pixels_[i / samples];
         path.x = unit.tile.x0 + path.pixel % unit.tile.width();
         path.y = unit.tile.y0 + path.pixel / unit.tile.width();
-        path.key = c_.sampler.key(path.x, path.y, first_sample + i % samples);
+        path.key = c_.sampler.key(path.x, path.y, unit.index(first_sample + i % samples));
         const FilterSample position = c_.filter.sample(c_.sampler.get_2d(path.key, kFilterDimension));
         path.weight = position.weight;
         path.throughput = {1, 1, 1};
@@ -233,14 +233,15 @@ void WavefrontIntegrator::in_slices(size_t rays, Trace trace) const noexcept {
     }
 }
 
-void WavefrontIntegrator::accumulate(uint32_t count, TileSums& sums) {
+void WavefrontIntegrator::accumulate(const WorkUnit& unit, uint32_t count, TileSums& sums) {
     for (uint32_t i = 0; i < count; ++i) {
         const Path& path = paths_[i];
         const Rgb l = path.radiance;
-        const PixelSample sample{path.x, path.y, path.key.sample, l};
+        const PixelSample sample{path.x, path.y, path.key.index, l};
         const bool good = is_finite(l) && l.r >= 0 && l.g >= 0 && l.b >= 0;
         if (good) {
-            sums.color[path.pixel].add(l, path.weight);
+            const uint64_t replicate = path.key.index % unit.all_replicates - unit.first_replicate;
+            sums.color[path.pixel * unit.replicates + replicate].add(l, path.weight);
             if (!sums.squares.empty()) sums.squares[path.pixel].add(l, path.weight);
             if (!sums.light.empty()) parts_.add_to(sums.light[path.pixel], i, path.weight);
             counters_->good(sample);

@@ -147,7 +147,7 @@ private:
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;
     void record_vertex(uint32_t id, const Ray& ray, const Hit& hit) noexcept;
-    void accumulate(uint32_t count, TileSums& sums);
+    void accumulate(const WorkUnit& unit, uint32_t count, TileSums& sums);
     template <class Trace>
     void in_slices(size_t rays, Trace trace) const noexcept;
 

@@ -431,6 +431,13 @@ Status validate(const RenderSettings& s) {
             fmt::format("Russian roulette after {} bounces: expected at most {}", s.roulette_depth, kMaxDepth));
     if (!(s.clamp >= 0 && s.clamp <= float(kMaxClamp)))
         return usage(fmt::format("a clamp of {}: expected 0 to {}", s.clamp, kMaxClamp));
+    if (!(s.target_error == 0 ||
+          (s.target_error >= float(kMinTargetError) && s.target_error <= float(kMaxTargetError))))
+        return usage(
+            fmt::format("a target error of {}: expected {} to {}", s.target_error, kMinTargetError, kMaxTargetError));
+    if (s.target_error > 0 && s.samples_per_pixel < kLeastMostSamples)
+        return usage(fmt::format("at most {} samples per pixel towards a target error: expected at least {}",
+                                 s.samples_per_pixel, kLeastMostSamples));
     if (!(s.ao_distance >= 0 && s.ao_distance <= float(kMaxAoDistance)))
         return usage(
             fmt::format("an ambient occlusion distance of {}: expected 0 to {}", s.ao_distance, kMaxAoDistance));

@@ -150,7 +150,9 @@ uint32_t independent_bits(const SampleKey& key, uint32_t dimension) {
 
 SampleKey Sampler::key(uint32_t x, uint32_t y, uint64_t sample) const noexcept {
     const uint64_t place = uint64_t{y} << 32 | x;
-    return {mix(mix(seed_ + kGolden) ^ place), sample};
+    const uint64_t pixel = mix(mix(seed_ + kGolden) ^ place);
+    if (replicates_ == 1) return {pixel, sample, sample};
+    return {mix(pixel + (sample % replicates_ + 1) * kGolden), sample / replicates_, sample};
 }
 
 uint32_t Sampler::bits(const SampleKey& key, uint32_t dimension) const noexcept {

@@ -17,12 +17,15 @@ namespace steradian {
 /// One sample of one pixel, hashed with the seed: what every number of that sample is derived from.
 struct SampleKey {
     uint64_t pixel = 0;   ///< hash of (seed, x, y)
-    uint64_t sample = 0;  ///< index of the sample
+    uint64_t sample = 0;  ///< index of the sample in its sequence
+    uint64_t index = 0;   ///< of the sample in its pixel, for reports
 };
 
 class Sampler {
 public:
-    Sampler(SamplerKind kind, uint64_t seed) noexcept : kind_(kind), seed_(seed) {}
+    /// `replicates` independent sequences for each pixel take turns.
+    Sampler(SamplerKind kind, uint64_t seed, uint32_t replicates = 1) noexcept
+        : kind_(kind), seed_(seed), replicates_(replicates) {}
 
     /// x, y: absolute pixel coordinates in the full picture, whatever the crop.
     SampleKey key(uint32_t x, uint32_t y, uint64_t sample) const noexcept;
@@ -39,6 +42,7 @@ private:
 
     SamplerKind kind_;
     uint64_t seed_;
+    uint32_t replicates_;
 };
 
 }  // namespace steradian

@@ -93,6 +93,36 @@ TEST_F(RenderCommand, ATimeLimitGivesTheFileOfItsNumberOfSamples) {
     expect_files({"a.exr", "b.exr"});
 }
 
+TEST_F(RenderCommand, ATargetForTheErrorIsReachedOrSaidToBeMissed) {
+    const Outcome o = steradian({"render", "scene.json", "--target-error", "0.2", "-o", "a.exr", "--json"});
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(field(o.out, "certified"), "true");
+    EXPECT_EQ(field(o.out, "confidence"), "0.95");
+    EXPECT_LE(std::stod(field(o.out, "bound")), 0.2);
+    EXPECT_LE(std::stod(field(o.out, "estimate")), std::stod(field(o.out, "bound")));
+    EXPECT_LE(std::stod(field(o.out, "min_samples")), std::stod(field(o.out, "mean_samples")));
+    EXPECT_LE(std::stod(field(o.out, "mean_samples")), std::stod(field(o.out, "max_samples")));
+    EXPECT_NE(o.err.find("target error 0.2 reached"), std::string::npos) << o.err;
+    const auto image = read_image(folder_.file("a.exr"));
+    ASSERT_TRUE(image.ok());
+    EXPECT_EQ(image->metadata.at("steradian:certified").substr(0, 19), "yes: error at most ");
+
+    // With so few pixels and samples it cannot be, and that is said even where nothing else is.
+    const Outcome missed = steradian({"render", "scene.json", "--target-error", "0.01", "--spp", "16", "--size",
+                                      "40x40", "-q", "--json", "-o", "b.exr"});
+    EXPECT_EQ(missed.code, 4);
+    EXPECT_EQ(field(missed.out, "certified"), "false");
+    EXPECT_EQ(field(missed.out, "complete"), "true");
+    EXPECT_NE(missed.err.find("not certified"), std::string::npos) << missed.err;
+    expect_files({"a.exr", "b.exr"});
+
+    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "0.2", "--time-limit", "1s"}).code, 2);
+    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "-1"}).code, 2);
+    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "1e-9"}).code, 2);
+    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "0.2", "--spp", "15"}).code, 2);
+    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "0.2", "--aovs", "depth"}).code, 2);
+}
+
 TEST_F(RenderCommand, ATimeLimitIsATime) {
     for (const char* bad : {"x", "5d", "-1s", "0", "0s", "1e99s", "s", "nan", "1 s", "1s2"}) {
         const Outcome o = steradian({"render", "scene.json", std::string("--time-limit=") + bad, "-o", "c.png"});

@@ -60,6 +60,17 @@ TEST(NativeScene, Aovs) {
     expect_error(scene_with(R"("film": {"aovs": §7})"), "'aovs'");
 }
 
+TEST(NativeScene, ATargetForTheErrorMakesSppALimit) {
+    const auto settings = [](const char* render) {
+        return load_good(scene_with(std::string("\"render\": {") + render + "}")).settings;
+    };
+    EXPECT_EQ(settings("").target_error, 0);
+    EXPECT_EQ(settings("\"target_error\": 0.05").target_error, 0.05f);
+    EXPECT_EQ(settings("\"target_error\": 0.05").samples_per_pixel, kDefaultMostSamples);
+    EXPECT_EQ(settings("\"spp\": 512, \"target_error\": 0.05").samples_per_pixel, 512u);
+    EXPECT_FALSE(load_text(scene_with("\"render\": {\"target_error\": 0}")).ok());
+}
+
 TEST(NativeScene, FiltersHaveTheirOwnDefaultRadius) {
     const std::pair<std::string, Filter> cases[] = {{"box", {FilterKind::box, 0.5f}},
                                                     {"tent", {FilterKind::tent, 1}},

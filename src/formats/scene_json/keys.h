@@ -14,9 +14,9 @@ using Key = std::string_view;
 
 inline constexpr Key kScene[] = {"$schema", "version",  "comment",   "render", "film",    "camera",
                                  "cameras", "textures", "materials", "shapes", "objects", "lights"};
-inline constexpr Key kRender[] = {"integrator", "max_depth",      "spp",          "sampler",        "seed",
-                                  "camera",     "light_sampling", "light_choice", "roulette_depth", "clamp",
-                                  "ao_distance"};
+inline constexpr Key kRender[] = {"integrator",  "max_depth",      "spp",          "sampler",        "seed",
+                                  "camera",      "light_sampling", "light_choice", "roulette_depth", "clamp",
+                                  "ao_distance", "target_error"};
 inline constexpr Key kFilm[] = {"resolution", "filter", "crop", "aovs"};
 inline constexpr Key kFilter[] = {"type", "radius"};
 inline constexpr Key kPerspectiveCamera[] = {

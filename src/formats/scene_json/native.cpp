@@ -151,6 +151,10 @@ void NativeLoader::read_render(Value value) {
     settings.clamp = render.number_or("clamp", settings.clamp, Range{0, kMaxClamp});
     settings.ao_distance = render.number_or("ao_distance", settings.ao_distance, Range{0, kMaxAoDistance});
     settings.max_depth = static_cast<uint32_t>(render.integer_or("max_depth", settings.max_depth, 0, kMaxDepth));
+    if (render.find("target_error")) {
+        settings.target_error = render.number("target_error", Range{kMinTargetError, kMaxTargetError});
+        settings.samples_per_pixel = kDefaultMostSamples;
+    }
     settings.samples_per_pixel = render.integer_or("spp", settings.samples_per_pixel, 1, kMaxSamplesPerPixel);
     settings.sampler = static_cast<SamplerKind>(render.choice_or("sampler", 0, names_of<SamplerKind>()));
     settings.seed = render.integer_or("seed", settings.seed, 0, UINT64_MAX);
