@@ -69,7 +69,7 @@ struct LoadedScene {
 };
 
 /// By extension: .json (Steradian's own format and the course vocabulary), .gltf, .glb, .obj, .ply. A model without a
-/// camera gets one that frames it; where nothing shines there is a neutral studio light.
+/// camera gets one that frames it; where nothing but textures shines there is a neutral studio light.
 Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& options = {});
 
 /// A JSON scene from memory; relative paths resolve against `base_folder`. `name` stands for the file in messages.

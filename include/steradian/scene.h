@@ -322,7 +322,8 @@ inline constexpr double kMinAngularDiameter = 1e-3, kMaxAngularDiameter = 90;  /
 /// Shadow rays per camera sample that one light may ask for.
 inline constexpr uint32_t kMaxLightSamples = 4096;
 
-/// Every point of the instance's surface emits `radiance`, on the side of the geometric normal unless two_sided.
+/// Every point of the instance's surface emits `radiance`, times the texture there, on the side of the geometric normal
+/// unless two_sided.
 struct AreaLight {
     InstanceId instance{};
     Rgb radiance{1, 1, 1};
@@ -330,6 +331,7 @@ struct AreaLight {
     uint32_t samples = 1;  ///< shadow rays per camera sample, 1 … kMaxLightSamples
     bool visible_to_camera =
         true;  ///< otherwise rays from the camera pass through the instance as if it were not there
+    std::optional<TextureId> texture = std::nullopt;  ///< may exceed 1; negative values count as 0; never a MIP map
 };
 
 /// Radiance from infinitely far: constant, or a latitude-longitude image times `radiance`.

@@ -1,5 +1,6 @@
 #include "steradian/load.h"
 
+#include <algorithm>
 #include <new>
 #include <stdexcept>
 
@@ -75,10 +76,17 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
     return loaded;
 }
 
+/// Screens and little lamps painted on a model: they shine, but are not there to light it.
+bool is_decoration(const Light& light) {
+    const auto* area = std::get_if<AreaLight>(&light);
+    return area && area->texture;
+}
+
 /// A model without a camera gets one; one that nothing shines on gets the studio, unless the caller chose what is
 /// around it. An author's own camera may stand below the model, so then there is no floor.
 void complete(LoadedScene& loaded, Assets& assets, const LoadOptions& options) {
-    const bool dark = loaded.scene.lights.empty() && !options.environment.replace;
+    const std::vector<Light>& lights = loaded.scene.lights;
+    const bool dark = std::all_of(lights.begin(), lights.end(), is_decoration) && !options.environment.replace;
     const bool framed = loaded.scene.cameras.empty() || options.turn;
     if (options.turn)
         add_turntable_camera(loaded, assets, *options.turn);

@@ -10,6 +10,7 @@ namespace steradian {
 struct Emission {
     Rgb radiance{0, 0, 0};
     bool two_sided = false;
+    bool textured = false;  ///< how much they emit depends on the place
 };
 Emission emission_of(const Scene& scene, MaterialId material);
 

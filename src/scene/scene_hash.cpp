@@ -17,10 +17,18 @@ public:
         list(s.instances);
         list(s.lights);
         list(s.cameras);
+        light_textures(s.lights);
     }
     std::string hex() const { return hash_.hex(); }
 
 private:
+    /// Behind everything else, each with a mark of its own: the hash of scenes without them is what it was before.
+    void light_textures(const std::vector<Light>& lights) {
+        for (uint32_t i = 0; i < lights.size(); ++i)
+            if (const auto* area = std::get_if<AreaLight>(&lights[i]); area && area->texture)
+                put('t', i, *area->texture);
+    }
+
     template <class T>
     void list(const std::vector<T>& elements) {
         hash_.value(uint64_t(elements.size()));

@@ -281,6 +281,7 @@ private:
     }
     void check(const AreaLight& l) const {
         refers(l.instance, s_.instances, "object");
+        if (l.texture) refers(*l.texture, s_.textures, "texture");
         color(l.radiance, "the radiance must be finite and not negative");
         samples(l.samples);
     }

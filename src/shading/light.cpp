@@ -36,7 +36,7 @@ Rgb emitted_radiance(const ShadingScene& scene, const SurfacePoint& point, Vec3 
     if (scene.lights[light].of_material) return material_emission(scene, point, wo);
     const AreaLight& area = std::get<AreaLight>(scene.scene.lights[light]);
     const float side = dot(wo, point.ng);
-    return side > 0 || (side < 0 && area.two_sided) ? area.radiance : Rgb{};
+    return side > 0 || (side < 0 && area.two_sided) ? area_radiance(scene, area, point) : Rgb{};
 }
 
 uint32_t distant_sources(const ShadingScene& scene) noexcept { return static_cast<uint32_t>(1 + scene.suns.size()); }

@@ -82,7 +82,7 @@ public:
     }
     Shining operator()(const AreaLight& light) const {
         Shining out{std::visit(EmitterBounds(scene_, data_.area, light.two_sided), data_.emitter)};
-        const double radiance = mean(light.radiance);
+        const double radiance = mean(light.radiance) * data_.mean_texture;
         out.bounds.strength *= radiance;
         out.flux = std::numbers::pi * data_.area * radiance * (light.two_sided ? 2 : 1);
         return out;

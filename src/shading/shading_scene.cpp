@@ -9,6 +9,7 @@
 #include "scene/emission.h"
 #include "shading/environment.h"
 #include "shading/fresnel.h"
+#include "shading/light/emitter_texture.h"
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/sphere_emitter.h"
 #include "shading/microfacet_energy.h"
@@ -43,12 +44,13 @@ ShadingScene::TransformData transform_data(const Affine& m) {
 /// Turns the surface of an area light into world space. The fields that the light's kind of shape needs are filled in.
 class EmitterBuilder {
 public:
-    EmitterBuilder(const ShadingScene& scene, InstanceId id, bool two_sided, ShadingScene::LightData& out)
+    EmitterBuilder(const ShadingScene& scene, const AreaLight& light, ShadingScene::LightData& out)
         : scene_(scene),
-          id_(id),
-          two_sided_(two_sided),
-          instance_(scene.scene.instances[index(id)]),
-          data_(scene.transform_of(index(id))),
+          id_(light.instance),
+          two_sided_(light.two_sided),
+          means_(texture_means(scene, light)),
+          instance_(scene.scene.instances[index(id_)]),
+          data_(scene.transform_of(index(id_))),
           transform_(instance_.world_from_object),
           out_(out) {}
 
@@ -57,8 +59,9 @@ public:
         triangles.reserve(scene_.scene.meshes[index(id)].indices.size() / 3);
         double total = 0;
         each_triangle_bounds(scene_, id_, id, two_sided_, [&](const LightBounds& triangle) {
-            triangles.push_back(triangle);
             total += triangle.strength;
+            triangles.push_back(triangle);
+            if (!means_.triangles.empty()) triangles.back().strength *= means_.triangles[triangles.size() - 1];
         });
         finish(MeshEmitter{id_, id, LightTree(triangles)}, total);
     }
@@ -149,12 +152,14 @@ private:
     void finish(Emitter emitter, double area) {
         if (!(area > 0) || !std::isfinite(area)) return;
         out_.area = area;
+        out_.mean_texture = means_.whole;
         out_.emitter = std::move(emitter);
     }
 
     const ShadingScene& scene_;
     InstanceId id_;
     bool two_sided_;
+    TextureMeans means_;
     const Instance& instance_;
     const ShadingScene::TransformData& data_;
     const Affine& transform_;
@@ -195,7 +200,7 @@ public:
         const MaterialId material = scene_.scene.instances[index(light.instance)].material;
         data().of_material = !is_black(emission_of(scene_.scene, material).radiance);
         const ShapeId shape = scene_.scene.instances[index(light.instance)].shape;
-        std::visit(EmitterBuilder(scene_, light.instance, light.two_sided, data()), scene_.scene.shapes[index(shape)]);
+        std::visit(EmitterBuilder(scene_, light, data()), scene_.scene.shapes[index(shape)]);
     }
     void operator()(const EnvironmentLight& light) {
         scene_.environment_light = current();
@@ -236,7 +241,6 @@ private:
     SharedTables shared_;
 };
 
-/// Image textures only: the environment counts its own.
 /// Only images of floats can.
 bool adds_energy(const RawImage& image) {
     if (image.format != TexelFormat::f16 && image.format != TexelFormat::f32) return false;
@@ -262,15 +266,31 @@ std::vector<std::shared_ptr<const MipMap>> make_mip_maps(const Scene& scene) {
     return out;
 }
 
+/// Of each texture whether surfaces shine by it.
+std::vector<bool> shining_textures(const Scene& scene) {
+    std::vector<bool> out(scene.textures.size(), false);
+    for (const Light& light : scene.lights)
+        if (const auto* area = std::get_if<AreaLight>(&light); area && area->texture) out[index(*area->texture)] = true;
+    for (const Material& material : scene.materials)
+        if (const auto* m = std::get_if<OpenPbrMaterial>(&material); m && m->emission_color.texture)
+            out[index(*m->emission_color.texture)] = true;
+    return out;
+}
+
+/// Image textures only: the environment counts its own. What shines may have any value.
 void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
-    std::vector<bool> counted(scene.images.size(), false);
-    for (const Texture& texture : scene.textures) {
-        const auto* image = std::get_if<ImageTexture>(&texture);
-        if (!image || counted[index(image->image)]) continue;
-        counted[index(image->image)] = true;
-        if (const uint64_t bad = count_bad_texels(scene.images[index(image->image)], false); bad > 0)
+    const std::vector<bool> shines = shining_textures(scene);
+    std::vector<bool> used(scene.images.size(), false), reflects(scene.images.size(), false);
+    for (size_t i = 0; i < scene.textures.size(); ++i)
+        if (const auto* texture = std::get_if<ImageTexture>(&scene.textures[i])) {
+            used[index(texture->image)] = true;
+            if (!shines[i]) reflects[index(texture->image)] = true;
+        }
+    for (size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        if (const uint64_t bad = count_bad_texels(scene.images[i], false); bad > 0)
             diagnostics.warn("image texture: texels that are not finite count as 0", {}, bad);
-        if (adds_energy(scene.images[index(image->image)]))
+        if (reflects[i] && adds_energy(scene.images[i]))
             diagnostics.warn("an image texture has values above 1: surfaces that add energy do not exist");
     }
 }

@@ -45,6 +45,7 @@ struct ShadingScene {
     struct LightData {
         double area = 0;                      ///< world-space, of the whole light; 0 for lights that are no area lights
         Emitter emitter;                      ///< for area lights: the surface in world space
+        double mean_texture = 1;              ///< for area lights: TextureMeans::whole
         Vec3d direction;                      ///< for spots and directional lights: where they point, unit length
         double cos_inner = 1, cos_outer = 1;  ///< for spots
         double one_minus_cos = 0;             ///< for directional lights: of half the angular diameter

@@ -59,6 +59,62 @@ void add_rectangles(std::vector<Case>& out) {
                             4 * parallel_corner_form_factor(1, 1, 0.015625), {0.5, 0.0078125, 0}));
 }
 
+/// Light of two colours side by side: nearer to the floor's origin, and farther away from it.
+void add_textured(std::vector<Case>& out) {
+    const Color near{1, 0.5, 0}, far{0.125, 0.25, 2};
+    const double near_factor = 2 * parallel_corner_form_factor(1, 1, 2),
+                 far_factor = 2 * parallel_corner_form_factor(2, 1, 2) - near_factor;
+    const Color value = (near * near_factor + far * far_factor) * (kRho * kL);
+    const auto glowing = [&](bool two_sided) {
+        return emission(kL, two_sided)
+            .set("texture", Object("checkerboard").set("color0", near).set("color1", far).raw("scale", "[2, 0.5]"));
+    };
+    const auto add = [&](const char* id, const char* what, const Object& light) {
+        out.push_back(noisy(
+            whole(id, std::string("ρ (L₁ F₁ + L₂ F₂), ") + what, floor_scene({-0.6, 0.9, 0.9}).object(light), value)));
+    };
+    const Object sheet = rectangle({1, 2, 0}, {1, 0, 0}, {0, 0, 1}, "black");
+    add("rect_textured", "by solid angle", Object(sheet).set("light", glowing(false)));
+    add("rect_textured_two_sided", "by solid angle", Object(sheet).set("light", glowing(true)));
+    // The border between the colours runs across both triangles.
+    const std::vector<V3> square{{0, 2, -1}, {2, 2, -1}, {2, 2, 1}, {0, 2, 1}};
+    add("mesh_textured", "a mesh of two triangles",
+        polygon(square, "black").raw("uvs", "[[0, 0], [1, 0], [1, 1], [0, 1]]").set("light", glowing(false)));
+    // Each triangle has one colour.
+    const std::vector<V3> tiles{{0, 2, -1}, {1, 2, -1}, {1, 2, 1}, {0, 2, 1},
+                                {1, 2, -1}, {2, 2, -1}, {2, 2, 1}, {1, 2, 1}};
+    std::string places;
+    for (int i = 0; i < 8; ++i) places += i == 0 ? "[[0.25, 0]" : i < 4 ? ", [0.25, 0]" : ", [0.75, 0]";
+    add("mesh_textured_by_triangle", "a mesh of four triangles",
+        mesh(tiles, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, "black")
+            .raw("uvs", places + "]")
+            .set("light", glowing(true)));
+    // Seen: the colour of the place, on the back where there are two sides.
+    for (const bool back : {false, true})
+        for (const bool is_far : {false, true}) {
+            const double x = is_far ? 1.5 : 0.5;
+            const SceneText scene = empty_scene({x, back ? 4.0 : 0.0, 0.5}, {x, 2, 0.25})
+                                        .object(Object(sheet).set("light", glowing(true)))
+                                        .depth(0);
+            out.push_back(whole(std::string("rect_textured_") + (back ? "back_" : "front_") + (is_far ? "far" : "near"),
+                                "L of the place", scene, (is_far ? far : near) * kL));
+        }
+}
+
+/// Flat lights of paper, askew, so that rounding has their own points before or behind them. Seen from above.
+void add_own_points(std::vector<Case>& out) {
+    const auto seen = [&](const std::string& id, const Object& light, double value) {
+        SceneText scene = empty_scene({0.3, 2, 1.7}, {0, 0.5, 0}).material("paper", diffuse(kRho, true));
+        out.push_back(whole(id, value == 0 ? "0: lit by nothing" : "L: lit by nothing", scene.object(light), value));
+    };
+    const Object sheet = rectangle({0, 0.5, 0}, {0.4, 0, 0}, {0, -0.3, 0.3}, "paper");
+    const Object round = disk({0, 0.5, 0}, {0, -1, -1}, 0.4, "paper");
+    seen("rect_own_back", Object(sheet).set("light", emission(kL)), 0);
+    seen("rect_own_front", Object(sheet).set("light", emission(kL, true)), kL);
+    seen("disk_own_back", Object(round).set("light", emission(kL)), 0);
+    seen("disk_own_front", Object(round).set("light", emission(kL, true)), kL);
+}
+
 void add_meshes(std::vector<Case>& out) {
     const std::vector<V3> square{{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}};
     out.push_back(as_in_catalogue(one_light("mesh_rect_centred", "F of four parallel corners; a mesh of two triangles",
@@ -189,6 +245,8 @@ void add_many(std::vector<Case>& out) {
 std::vector<Case> area_light_cases() {
     std::vector<Case> out;
     add_rectangles(out);
+    add_textured(out);
+    add_own_points(out);
     add_meshes(out);
     add_round(out);
     add_occluded(out);

@@ -96,6 +96,56 @@ TEST(Paths, EveryStrategyFindsAnEvenSkyOnBothSides) {
     for (const RenderSettings& other : {direct, light, bsdf}) expect_same_means(scene, both, other);
 }
 
+/// Shapes with a texture that shines, around (0, 0.5, 0).
+std::vector<std::pair<std::string, Object>> textured_lights() {
+    const auto shine = [](bool two_sided, std::string_view texture = "squares") {
+        return emission({4, 8, 16}, two_sided).set("texture", texture);
+    };
+    const Object folded =
+        mesh({{-0.3, 0.2, -0.3}, {0.3, 0.3, -0.3}, {0.2, 0.8, 0.1}, {-0.4, 0.5, 0.3}}, {{0, 1, 2}, {0, 2, 3}}, "white");
+    return {
+        {"rectangle", rectangle({0, 0.5, 0}, {0.4, 0, 0}, {0, -0.3, 0.3}, "white").set("light", shine(false))},
+        {"skewed", rectangle({0, 0.5, 0}, {0.4, 0.1, 0}, {0.1, 0.3, 0.3}, "white").set("light", shine(true))},
+        {"disk", disk({0, 0.5, 0}, {0.2, -1, 0.3}, 0.4, "white").set("light", shine(true))},
+        {"sphere", sphere({0, 0.5, 0}, 0.3, "white").set("light", shine(false))},
+        {"ellipsoid",
+         sphere({0, 0, 0}, 1, "white")
+             .raw("transform", steps({scale({0.5, 0.2, 0.3}), rotate({0, 0, 1}, 30), translate({0, 0.5, 0})}))
+             .set("light", shine(true))},
+        {"mesh", Object(folded).raw("uvs", "[[0, 0], [1, 0], [1, 1], [0, 1]]").set("light", shine(false))},
+        {"vertices", Object(folded)
+                         .raw("colors", "[[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0]]")
+                         .set("light", shine(true, "corners"))},
+        {"mirrored", Object(folded)
+                         .raw("uvs", "[[0, 0], [1, 0], [1, 1], [0, 1]]")
+                         .raw("transform", steps({scale({-1, 1.2, 1})}))
+                         .set("light", shine(false))},
+    };
+}
+
+/// Above a floor that shows in pixels so large that the directions of the floor find each light often enough: of a few
+/// hits in thousands of samples the variance is not known.
+TEST(Paths, EveryStrategyFindsTexturedLights) {
+    for (const auto& [name, light] : textured_lights()) {
+        SCOPED_TRACE(name);
+        SceneText s;
+        s.look({0, 2, 2}, {0, 0.1, 0}, 26).size(3, 3).integrator("path").material("white", diffuse(0.8, true)).depth(1);
+        s.texture("squares", Object("checkerboard")
+                                 .set("color0", Color{1, 0.125, 0.03125})
+                                 .set("color1", Color{0, 0.125, 0.5})
+                                 .raw("scale", "[6, 4]")
+                                 .set("rotation", 20.0));
+        s.texture("corners", Object("vertex_color"));
+        s.object(ground({0, 0, 0}, 1.5, 1.5, "white")).object(light);
+        const PreparedCase scene(s.str(), {});
+        RenderSettings both = independent(scene), direct = both, only_light = both, bsdf = both;
+        direct.integrator = IntegratorKind::direct;
+        only_light.light_sampling = LightSampling::light;
+        bsdf.light_sampling = LightSampling::bsdf;
+        for (const RenderSettings& other : {direct, only_light, bsdf}) expect_same_means(scene, both, other);
+    }
+}
+
 TEST(Paths, LightSamplesAloneAgreeWithBoth) {
     const PreparedCase scene(room().depth(3).str(), {});
     RenderSettings both = independent(scene), light = both;

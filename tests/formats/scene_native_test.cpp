@@ -433,6 +433,43 @@ TEST(NativeScene, HiddenLightsAndSuns) {
     EXPECT_FALSE(std::get<EnvironmentLight>(l[3]).visible_to_camera);
 }
 
+TEST(NativeScene, TexturedLights) {
+    const LoadedScene loaded = load_good(scene_with(R"("textures": {"screen": {"type": "checkerboard"}}, "objects": [
+        {"type": "sphere", "light": {"radiance": 3, "texture": "screen"}},
+        {"type": "sphere", "name": "bulb"}], "lights": [
+        {"type": "area", "object": "bulb", "radiance": 2, "texture": {"type": "vertex_color"}}])"));
+    const auto& first = std::get<AreaLight>(loaded.scene.lights[0]);
+    ASSERT_TRUE(first.texture);
+    EXPECT_TRUE(std::holds_alternative<CheckerTexture>(loaded.scene.textures[index(*first.texture)]));
+    EXPECT_EQ(first.radiance, (Rgb{3, 3, 3}));
+    const auto& second = std::get<AreaLight>(loaded.scene.lights[1]);
+    ASSERT_TRUE(second.texture);
+    EXPECT_TRUE(std::holds_alternative<VertexColorTexture>(loaded.scene.textures[index(*second.texture)]));
+}
+
+/// A light may be as bright as it likes. What is named is warned about once, where it stands.
+TEST(NativeScene, OnlyWhatReflectsShouldNotExceedOne) {
+    const auto warnings = [](const std::string& use) {
+        return load_good(scene_with(R"("textures": {"t": {"type": "checkerboard", "color1": [0, 4, 0]}},
+            "materials": {"shining": {"type": "open_pbr", "emission_luminance": 1, "emission_color": "t"}},
+            "objects": [{"type": "sphere", "name": "bulb"})" +
+                                    use))
+            .diagnostics.warnings();
+    };
+    const std::string light = R"(], "lights": [{"type": "area", "object": "bulb", "radiance": 1, "texture": )";
+    EXPECT_TRUE(warnings(light + "\"t\"}]").empty());
+    EXPECT_TRUE(warnings(light + R"({"type": "constant", "color": 5}}])").empty());
+    const std::string reflecting = R"(, {"type": "sphere", "material": {"type": "diffuse", "reflectance": "t"}})";
+    const std::vector<Warning> once = warnings(reflecting + reflecting + light + "\"t\"}]");
+    ASSERT_EQ(once.size(), 1u);
+    EXPECT_EQ(once[0].count, 1u);
+    EXPECT_NE(once[0].message.find("reflectance above 1"), std::string::npos) << once[0].message;
+    const std::vector<Warning> at_place = warnings(
+        R"(, {"type": "sphere", "material": {"type": "diffuse", "reflectance": {"type": "constant", "color": 5}}}])");
+    ASSERT_EQ(at_place.size(), 1u);
+    EXPECT_GT(at_place[0].where.line, once[0].where.line);
+}
+
 /// The flux of a spot is its intensity integrated over directions; here by the midpoint rule over the cosine, with the
 /// smoothstep written out once more.
 TEST(NativeScene, TheFluxOfASpotIsItsIntegratedIntensity) {

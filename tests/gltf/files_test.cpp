@@ -44,6 +44,42 @@ TEST_F(GltfFiles, NamesInsideTheFolderAreRead) {
     EXPECT_EQ(loaded->scene.lights.size(), 3u);
 }
 
+/// A picture of one pixel.
+constexpr const char* kPixel =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP438AAAAQBAYDFKhhdAAAAAElFTkSuQmCC";
+
+/// They multiply the radiance; a model with nothing else that shines is lit by the studio as well.
+TEST_F(GltfFiles, EmissiveTexturesShine) {
+    const auto with_material = [&](const std::string& material) {
+        std::string text = with_buffer("a b.bin");
+        const std::string there = "\"attributes\"";
+        text.insert(text.find(there), "\"material\": 0, ");
+        text.pop_back();
+        text += ", \"materials\": [{" + material + "}], \"textures\": [{\"source\": 0}], \"images\": [{\"uri\": \"" +
+                kPixel + "\"}]}";
+        write(folder_.file("scene/m.gltf"), text);
+        auto loaded = load_scene(folder_.file("scene/m.gltf"));
+        if (!loaded) throw std::runtime_error(loaded.error().str());
+        return std::move(loaded).value();
+    };
+    const auto check = [&](const LoadedScene& loaded, Rgb radiance) {
+        const auto& light = std::get<AreaLight>(loaded.scene.lights.at(0));
+        EXPECT_EQ(light.radiance, radiance);
+        ASSERT_TRUE(light.texture);
+        const auto& texture = std::get<ImageTexture>(loaded.scene.textures.at(index(*light.texture)));
+        EXPECT_EQ(texture.color_space, ColorSpace::srgb);
+        EXPECT_EQ(loaded.scene.lights.size(), 4u);
+        EXPECT_TRUE(loaded.fidelity.empty());
+    };
+    check(with_material("\"emissiveFactor\": [1, 0.5, 0], \"emissiveTexture\": {\"index\": 0}"), {1, 0.5f, 0});
+    check(with_material(
+              "\"pbrMetallicRoughness\": {\"baseColorFactor\": [1, 0.5, 0, 1], \"baseColorTexture\": {\"index\": "
+              "0}}, \"extensions\": {\"KHR_materials_unlit\": {}}"),
+          {1, 0.5f, 0});
+    EXPECT_EQ(with_material("\"emissiveFactor\": [1, 1, 1]").scene.lights.size(), 1u);
+}
+
 TEST_F(GltfFiles, NamesOutsideAreRefusedUnlessAllowed) {
     const std::string outside = folder_.file("outside.bin");
     for (const std::string& uri : {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"), outside,

@@ -164,6 +164,7 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<AreaLight>(s.lights[3]).samples = 4; },
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).image = ImageId{0}; },
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).rotation = 90; },
+        [](Scene& s) { std::get<AreaLight>(s.lights[3]).texture = TextureId{0}; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up.x = 1; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_radius = 1; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).focus_distance = 1.0f; },

@@ -202,6 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"direction must be finite and not zero", [](Scene& s) { s.lights[0] = DirectionalLight{{0, 0, 0}}; }},
         Fault{"angular diameter", [](Scene& s) { s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, 91}; }},
         Fault{"angular diameter", [](Scene& s) { s.lights[0] = DirectionalLight{{0, -1, 0}, {1, 1, 1}, kNan}; }},
+        Fault{"refers to texture 77", [](Scene& s) { std::get<AreaLight>(s.lights[2]).texture = TextureId{77}; }},
         Fault{"refers to object 5", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{5}}; }},
         Fault{"light samples", [](Scene& s) { s.lights[2] = AreaLight{InstanceId{0}, {1, 1, 1}, false, 0}; }},
         Fault{"two area lights", [](Scene& s) { s.lights.push_back(AreaLight{InstanceId{0}}); }},

@@ -54,6 +54,12 @@ inline std::vector<AreaLightCase> area_light_cases() {
         out.push_back(std::move(box));
     }
     out.push_back(area_light("rectangle with two sides", rectangle, turned, true));
+    AreaLightCase textured = area_light("textured box", MeshId{0}, turned);
+    textured.scene.meshes.push_back(box_mesh());
+    CheckerTexture checker{{3, 1, 0}, {0, 0.1f, 0.2f}};
+    checker.scale = {1.7f, 2.3f};
+    std::get<AreaLight>(textured.scene.lights[0]).texture = add<TextureId>(textured.scene.textures, Texture{checker});
+    out.push_back(std::move(textured));
     out.push_back(area_light("sphere with two sides", sphere, uniform, true));
     return out;
 }

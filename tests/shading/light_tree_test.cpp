@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "scene/emission.h"
 #include "shading/area_lights.h"
 #include "shading/light_selection.h"
 #include "support/chi_square.h"
@@ -171,6 +172,78 @@ TEST(LightTree, NothingThatContributesIsLeftOut) {
         }
     }
     EXPECT_GT(contributing, 5000);
+}
+
+/// Two equal triangles, of which one is nine times as bright, and a point that sees both alike.
+void expect_the_brighter_triangle(bool of_material) {
+    Scene scene;
+    Mesh mesh;
+    mesh.positions = {{-2, 1, -1}, {-1, 1, -1}, {-1, 1, 1}, {2, 1, -1}, {1, 1, 1}, {1, 1, -1}};
+    mesh.uvs = {{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {1, 0}, {1.5f, 0.5f}, {1.5f, 0}};
+    mesh.indices = {0, 1, 2, 3, 4, 5};
+    const InstanceId instance = test::add_mesh(scene, std::move(mesh));
+    const TextureId texture =
+        add<TextureId>(scene.textures, Texture{CheckerTexture{{0.9f, 0.9f, 0.9f}, {0.1f, 0.1f, 0.1f}}});
+    if (of_material) {
+        OpenPbrMaterial shining;
+        shining.emission_luminance = 2;
+        shining.emission_color = {{1, 1, 1}, texture};
+        shining.geometry_thin_walled = true;
+        scene.instances[index(instance)].material = add<MaterialId>(scene.materials, Material{shining});
+        add_emission(scene);
+    } else {
+        scene.lights = {AreaLight{instance, {2, 2, 2}, true, 1, true, texture}};
+    }
+    const World world(std::move(scene));
+    const SurfacePoint from = test::receiver({0, 0, 0}, {0, 1, 0});
+    const auto density = [&](double x) {
+        const Ray ray = test::ray_towards({0, 0, 0}, {x, 1, -0.5});
+        const Hit hit = world.accel.intersect(ray);
+        EXPECT_TRUE(hit.found());
+        const SurfacePoint point = surface_at(world.shading, ray, hit);
+        return static_cast<double>(pdf_light(world.shading, 0, from, ray.d, &point));
+    };
+    // Nothing counts for less than a twentieth of the mean, which is 1/2.
+    EXPECT_NEAR(density(-1.4) / density(1.4), (0.95 * 0.9 + 0.025) / (0.95 * 0.1 + 0.025), 1e-4);
+    EXPECT_NEAR(world.shading.lights[0].mean_texture, 0.5, 1e-6);
+    int bright = 0;
+    test::Random random(3);
+    constexpr int kCount = 20000;
+    for (int i = 0; i < kCount; ++i) {
+        const uint32_t choice = random.bits32();
+        const auto sample = sample_light(world.shading, 0, from, choice, random.uniform2());
+        ASSERT_TRUE(sample);
+        bright += sample->wi.x < 0;
+        EXPECT_NEAR(sample->radiance.g, sample->wi.x < 0 ? 1.8f : 0.2f, 1e-6);
+    }
+    EXPECT_NEAR(static_cast<double>(bright) / kCount, 0.88, 4 * std::sqrt(0.88 * 0.12 / kCount));
+}
+TEST(LightTree, BrighterTrianglesAreChosenMoreOften) { expect_the_brighter_triangle(false); }
+TEST(LightTree, TrianglesAreChosenByWhatTheirMaterialEmits) { expect_the_brighter_triangle(true); }
+
+/// The mean of a texture over each shape, for choosing among lights: of a disk only what is on it, of a sphere by area.
+TEST(LightTree, TexturesDimLightsByTheirMean) {
+    const auto mean_of = [](Shape shape, CheckerTexture checker) {
+        Scene scene;
+        const InstanceId instance = test::add_shape(scene, std::move(shape));
+        const TextureId texture = add<TextureId>(scene.textures, Texture{checker});
+        scene.lights = {AreaLight{instance, {1, 2, 3}, false, 1, true, texture}};
+        return World(std::move(scene)).shading.lights[0].mean_texture;
+    };
+    CheckerTexture left{{1, 1, 1}, {0, 0, 0}};
+    left.scale = {1, 0};
+    left.offset = {0.75f, 0.5f};  // white where u is less than 1/4
+    EXPECT_NEAR(mean_of(Rectangle{}, left), 0.25, 1e-6);
+    EXPECT_NEAR(mean_of(Disk{}, left), 1.0 / 3 - std::sqrt(3) / (4 * std::numbers::pi), 1e-3);
+    EXPECT_NEAR(mean_of(Sphere{}, left), 0.25, 1e-6);
+    CheckerTexture top{{1, 1, 1}, {0, 0, 0}};
+    top.scale = {0, 1};
+    top.offset = {0.5f, 0.75f};
+    EXPECT_NEAR(mean_of(Sphere{}, top), (1 - std::sqrt(0.5)) / 2, 1e-3);
+    CheckerTexture red{{1, 0, 0}, {1, 0, 0}};
+    EXPECT_NEAR(mean_of(Rectangle{}, red), 1.0 / 6, 1e-6);
+    // Nothing that could shine is given up.
+    EXPECT_EQ(mean_of(Rectangle{}, CheckerTexture{{0, 0, 0}, {-1, -1, -1}}), 1e-3);
 }
 
 /// Whatever sample_light finds for a triangle: its probability was not 0, and the density agrees.

@@ -157,9 +157,7 @@ void Materials::read_extensions(const Object& material, Reading& r) {
     if (material.extension("KHR_materials_unlit")) {
         r.unlit = true;
         r.emission = r.surface.base_color.value;
-        if (r.surface.base_color.texture)
-            context_.not_honoured("the colours of an unlit material's texture and vertices have no effect",
-                                  material.offset());
+        r.emission_texture = r.surface.base_color.texture;
         return;
     }
     read_specular(material, r);

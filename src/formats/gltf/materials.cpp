@@ -101,10 +101,7 @@ void Materials::read_emission(const Object& material, Reading& r) {
     if (const auto strength = material.extension("KHR_materials_emissive_strength"))
         r.emission = r.emission * static_cast<float>(strength->number_or("emissiveStrength", 1, kNotNegative));
     if (is_black(r.emission)) return;
-    if (const auto use = images_.use(material, "emissiveTexture")) {
-        context_.not_honoured("an emissive texture has no effect: the surface does not shine", use->offset);
-        r.emission = {0, 0, 0};
-    }
+    r.emission_texture = texture(material, "emissiveTexture", Plane::color, r);
 }
 
 /// The default material of the specification.
@@ -185,6 +182,7 @@ Look Materials::finish(const Reading& r, const std::string& name) {
     Look out;
     out.material = make(r, name);
     out.emission = r.emission;
+    out.emission_texture = r.emission_texture;
     out.uv_sets = r.uv_sets;
     if (r.normals) context_.loaded.scene.reliefs.push_back({out.material, *r.normals});
     const bool has_grain = r.surface.specular_roughness_anisotropy > 0;

@@ -12,6 +12,7 @@ namespace steradian::gltf {
 struct Look {
     MaterialId material{};
     Rgb emission{0, 0, 0};
+    std::optional<TextureId> emission_texture = std::nullopt;  ///< multiplies it
     bool two_sided = false;  ///< emits on both sides; everything else of it is seen from both sides anyway
     uint32_t uv_sets = 0;    ///< which texture coordinates its textures read: bit n stands for TEXCOORD_n
     /// Its mesh needs tangents, along these texture coordinates where it has none.
@@ -33,6 +34,7 @@ private:
     struct Reading {
         OpenPbrMaterial surface;
         Rgb emission{0, 0, 0};
+        std::optional<TextureId> emission_texture;
         VertexColors colors = VertexColors::none;
         uint32_t uv_sets = 0;
         std::optional<NormalMap> normals;

@@ -203,7 +203,9 @@ private:
             const InstanceId instance = context_.assets.add_instance({part.shape, part.look.material, place}, name);
             if (!is_black(part.look.emission)) {
                 context_.budget.take(sizeof(Light) + name.size(), context_.source, node.offset());
-                context_.assets.add_light(AreaLight{instance, part.look.emission, part.look.two_sided, 1}, name);
+                context_.assets.add_light(
+                    AreaLight{instance, part.look.emission, part.look.two_sided, 1, true, part.look.emission_texture},
+                    name);
             }
         }
     }

@@ -93,7 +93,8 @@ inline constexpr Key kRectangleObject[] = {"type",  "name",   "material", "trans
                                            "light", "center", "half_u",   "half_v"};
 inline constexpr Key kDiskObject[] = {"type", "name", "material", "transform", "light", "center", "normal", "radius"};
 inline constexpr Key kInstanceObject[] = {"type", "name", "material", "transform", "light", "shape"};
-inline constexpr Key kObjectLight[] = {"type", "radiance", "two_sided", "light_samples", "visible_to_camera"};
+inline constexpr Key kObjectLight[] = {"type",      "radiance",      "texture",
+                                       "two_sided", "light_samples", "visible_to_camera"};
 
 inline constexpr Key kTransform[] = {"translate", "rotate", "scale", "matrix", "look_at"};
 inline constexpr Key kRotate[] = {"axis", "angle"};
@@ -104,8 +105,8 @@ inline constexpr Key kSpotLight[] = {"type",      "name", "position",    "direct
                                      "intensity", "flux", "inner_angle", "outer_angle"};
 inline constexpr Key kDirectionalLight[] = {
     "type", "name", "direction", "irradiance", "angular_diameter", "visible_to_camera"};
-inline constexpr Key kAreaLight[] = {"type",      "name",          "object",           "radiance",
-                                     "two_sided", "light_samples", "visible_to_camera"};
+inline constexpr Key kAreaLight[] = {"type",    "name",      "object",        "radiance",
+                                     "texture", "two_sided", "light_samples", "visible_to_camera"};
 inline constexpr Key kEnvironmentLight[] = {
     "type", "name", "radiance", "path", "color_space", "rotation", "scale", "light_samples", "visible_to_camera"};
 }  // namespace keys

@@ -1,6 +1,7 @@
 // The reader of Steradian's own scene format, version 1 (docs/scene-format.md).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -28,15 +29,19 @@ private:
     void read_textures(Value value);
     TextureId read_texture(Value value, const std::string& name, bool numbers = false);
     TextureId read_image_texture(Value value, const std::string& name, bool numbers);
-    /// The name of a texture, or a texture; nothing for other values. Images of `numbers` are linear by themselves.
-    std::optional<TextureId> find_texture(Value value, bool numbers = false);
+    /// What a texture is read for: images of numbers are linear by themselves, and only what reflects should not
+    /// exceed 1.
+    enum class TextureUse : uint8_t { reflection, emission, numbers };
+    /// The name of a texture, or a texture; nothing for other values.
+    std::optional<TextureId> find_texture(Value value, TextureUse use = TextureUse::reflection);
     /// A colour, the name of a texture, or a texture.
     TextureId read_reflectance(ObjectReader& material, std::string_view key = "reflectance");
     /// "roughness" or "alpha": a number, two, or a texture.
     Roughness read_roughness(ObjectReader& material);
     ConductorMaterial read_conductor(ObjectReader& material);
     FloatInput read_input(ObjectReader& material, std::string_view key, FloatInput fallback);
-    ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback);
+    ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback,
+                          TextureUse use = TextureUse::reflection);
     OpenPbrMaterial read_open_pbr(ObjectReader& material);
     DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
     /// "normal_map" or "bump_map"; `material` is filled in later.
@@ -60,6 +65,7 @@ private:
         bool two_sided;
         uint32_t samples;
         bool visible_to_camera;
+        std::optional<TextureId> texture;
     };
     void read_shapes(Value value);
     Geometry read_geometry(ObjectReader& reader, size_t type, const std::string& name);
@@ -68,7 +74,7 @@ private:
     void read_objects(Value value);
     void read_object(Value value);
     void make_emitters(InstanceRange range, const Emission& emission, const std::string& name);
-    Emission read_emission(ObjectReader& reader) const;
+    Emission read_emission(ObjectReader& reader);
 
     // native_lights.cpp
     void read_lights(Value value);
@@ -90,6 +96,11 @@ private:
     const Source& source_;
     Assets& assets_;
     NameTable<TextureId> textures_{"texture"};
+    struct Bright {
+        Rgb color;
+        size_t offset;
+    };
+    std::map<TextureId, Bright> too_bright_;  ///< textures above 1 that nothing reflects by, so far
     NameTable<MaterialId> materials_{"material"};
     NameTable<Geometry> shapes_{"shape"};
     NameTable<NamedObject> objects_{"object"};

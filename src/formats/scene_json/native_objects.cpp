@@ -149,19 +149,25 @@ void NativeLoader::read_objects(Value value) {
     for (const Value object : value.elements()) read_object(object);
 }
 
-NativeLoader::Emission NativeLoader::read_emission(ObjectReader& reader) const {
+NativeLoader::Emission NativeLoader::read_emission(ObjectReader& reader) {
     Emission emission;
     emission.radiance = reader.color("radiance", json::kEnergy);
     emission.two_sided = reader.boolean_or("two_sided", false);
     emission.samples = static_cast<uint32_t>(reader.integer_or("light_samples", 1, 1, kMaxLightSamples));
     emission.visible_to_camera = reader.boolean_or("visible_to_camera", true);
+    if (const auto texture = reader.find("texture")) {
+        emission.texture = find_texture(*texture, TextureUse::emission);
+        if (!emission.texture)
+            source_.fail(texture->offset(),
+                         "'texture' must be the name of a texture or a texture, got " + json::describe(*texture));
+    }
     return emission;
 }
 
 void NativeLoader::make_emitters(InstanceRange range, const Emission& emission, const std::string& name) {
     for (uint32_t i = 0; i < range.count; ++i)
         assets_.add_light(AreaLight{InstanceId(range.first + i), emission.radiance, emission.two_sided,
-                                    emission.samples, emission.visible_to_camera},
+                                    emission.samples, emission.visible_to_camera, emission.texture},
                           name);
 }
 

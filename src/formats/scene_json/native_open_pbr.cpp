@@ -14,10 +14,10 @@ FloatInput NativeLoader::read_input(ObjectReader& material, std::string_view key
     return {json::read_number(source_, *value, quoted(key), kUnit)};
 }
 
-ColorInput NativeLoader::read_input(ObjectReader& material, std::string_view key, ColorInput fallback) {
+ColorInput NativeLoader::read_input(ObjectReader& material, std::string_view key, ColorInput fallback, TextureUse use) {
     const auto value = material.find(key);
     if (!value) return fallback;
-    if (const auto texture = find_texture(*value)) return {{1, 1, 1}, texture};
+    if (const auto texture = find_texture(*value, use)) return {{1, 1, 1}, texture};
     return {json::read_color(source_, *value, quoted(key), kUnit)};
 }
 
@@ -54,7 +54,7 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("thin_film_thickness", m.thin_film_thickness, {0, 10});
     number("thin_film_ior", m.thin_film_ior, {1, 3});
     number("emission_luminance", m.emission_luminance, {0, 1e9});
-    input("emission_color", m.emission_color);
+    m.emission_color = read_input(material, "emission_color", m.emission_color, TextureUse::emission);
     input("geometry_opacity", m.geometry_opacity);
     m.geometry_thin_walled = material.boolean_or("geometry_thin_walled", m.geometry_thin_walled);
     return m;

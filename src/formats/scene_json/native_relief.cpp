@@ -26,7 +26,7 @@ MixMaterial NativeLoader::read_mix(ObjectReader& material) {
 }
 
 TextureId NativeLoader::read_numbers(Value value, std::string_view what) {
-    const auto texture = find_texture(value, /*numbers=*/true);
+    const auto texture = find_texture(value, TextureUse::numbers);
     if (!texture)
         source_.fail(value.offset(),
                      std::string(what) + " must be the name of a texture or a texture, got " + json::describe(value));

@@ -56,8 +56,10 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name, bool 
     ObjectReader reader(source_, value, kTextureSpecs[type], what);
     reader.require("type");
     Texture texture;
+    Rgb brightest;
     if (type == 0) {
-        texture = ConstantTexture{reader.color("color", json::kReflectance)};
+        brightest = reader.color("color", json::kReflectance);
+        texture = ConstantTexture{brightest};
     } else if (type == 3) {
         texture = VertexColorTexture{};
     } else {
@@ -65,14 +67,13 @@ TextureId NativeLoader::read_texture(Value value, const std::string& name, bool 
         checker.even = reader.color_or("color0", checker.even, json::kReflectance);
         checker.odd = reader.color_or("color1", checker.odd, json::kReflectance);
         read_placement(reader, checker);
-        context_.warn_about_reflectance(checker.even, value.offset());
-        context_.warn_about_reflectance(checker.odd, value.offset());
+        brightest = max_component(checker.even) > max_component(checker.odd) ? checker.even : checker.odd;
         texture = checker;
     }
-    if (const auto* constant = std::get_if<ConstantTexture>(&texture))
-        context_.warn_about_reflectance(constant->value, value.offset());
     reader.finish();
-    return assets_.add_texture(texture, name);
+    const TextureId id = assets_.add_texture(texture, name);
+    if (max_component(brightest) > 1) too_bright_[id] = {brightest, value.offset()};
+    return id;
 }
 
 TextureId NativeLoader::read_image_texture(Value value, const std::string& name, bool numbers) {
@@ -95,10 +96,16 @@ TextureId NativeLoader::read_image_texture(Value value, const std::string& name,
     return assets_.add_texture(texture, name);
 }
 
-std::optional<TextureId> NativeLoader::find_texture(Value value, bool numbers) {
-    if (value.is(Kind::string)) return textures_.get(source_, value.string(), value.offset());
-    if (value.is(Kind::object)) return read_texture(value, "", numbers);
-    return std::nullopt;
+std::optional<TextureId> NativeLoader::find_texture(Value value, TextureUse use) {
+    std::optional<TextureId> id;
+    if (value.is(Kind::string)) id = textures_.get(source_, value.string(), value.offset());
+    if (value.is(Kind::object)) id = read_texture(value, "", use == TextureUse::numbers);
+    if (!id || use != TextureUse::reflection) return id;
+    if (const auto bright = too_bright_.find(*id); bright != too_bright_.end()) {
+        context_.warn_about_reflectance(bright->second.color, bright->second.offset);
+        too_bright_.erase(bright);
+    }
+    return id;
 }
 
 TextureId NativeLoader::read_reflectance(ObjectReader& material, std::string_view key) {

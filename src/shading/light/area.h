@@ -2,6 +2,7 @@
 
 #include "shading/emission.h"
 #include "shading/light/disk_emitter.h"
+#include "shading/light/emitter_texture.h"
 #include "shading/light/light_kind.h"
 #include "shading/light/mesh_emitter.h"
 #include "shading/light/rectangle_emitter.h"
@@ -26,9 +27,17 @@ inline SurfacePoint point_of(const LightContext& context, InstanceId instance, c
     return surface_at(context.scene, ray, {1, at.u, at.v, at.prim, index(instance)});
 }
 
+/// A flat light sends nothing to its own points. Rounding has them just before or behind it, where a rectangle fills
+/// half of all directions.
+inline bool is_on_flat(const AreaLight& light, const LightContext& context, const SurfacePoint& from) {
+    const Emitter& emitter = context.data().emitter;
+    return from.instance == index(light.instance) &&
+           (std::holds_alternative<RectangleEmitter>(emitter) || std::holds_alternative<DiskEmitter>(emitter));
+}
+
 inline std::optional<LightSample> sample_kind(const AreaLight& light, const LightContext& context,
                                               const SurfacePoint& from, uint32_t choice, Vec2 u) {
-    if (is_black(light.radiance)) return std::nullopt;
+    if (is_black(light.radiance) || is_on_flat(light, context, from)) return std::nullopt;
     const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided};
     const std::optional<EmitterSample> at =
         std::visit([&](const auto& emitter) { return sample_emitter(emitter, emitter_context, from.p, choice, u); },
@@ -41,10 +50,12 @@ inline std::optional<LightSample> sample_kind(const AreaLight& light, const Ligh
     if (!ray) return std::nullopt;
     const bool cut_out = context.scene.has_cut_outs && context.scene.is_cut_out(index(light.instance));
     Rgb radiance = light.radiance;
-    if (cut_out || context.data().of_material) {
+    if (light.texture || cut_out || context.data().of_material) {
         const SurfacePoint point = point_of(context, light.instance, from, *at);
-        if (context.data().of_material) radiance = material_emission(context.scene, point, -towards->wi);
+        radiance = context.data().of_material ? material_emission(context.scene, point, -towards->wi)
+                                              : area_radiance(context.scene, light, point);
         if (cut_out) radiance = radiance * opacity_at(context.scene, point);
+        if (is_black(radiance)) return std::nullopt;
     }
     return LightSample{towards->wi, radiance, pdf, *ray};
 }
@@ -52,6 +63,7 @@ inline std::optional<LightSample> sample_kind(const AreaLight& light, const Ligh
 inline double pdf_kind(const AreaLight& light, const LightContext& context, const SurfacePoint& from, Vec3 wi,
                        const SurfacePoint* hit) {
     if (!hit || hit->instance != index(light.instance) || is_black(light.radiance)) return 0;
+    if (is_on_flat(light, context, from)) return 0;
     if (!(dot(hit->ng, wi) < 0) && !light.two_sided) return 0;
     const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided, hit->prim};
     return std::visit(
