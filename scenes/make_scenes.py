@@ -357,6 +357,55 @@ def frosted():
     })
 
 
+def photometric(path):
+    """An IES file of a downlight with two wings along its plane 0."""
+    vertical, horizontal = range(0, 91, 5), range(0, 181, 15)
+
+    def candela(v, h):
+        wings = math.exp(-((v - 38) / 14) ** 2) * (0.35 + 0.65 * math.cos(math.radians(h)) ** 2)
+        return 900 * (wings + 0.45 * math.exp(-(v / 22) ** 2)) * math.sqrt(max(math.cos(math.radians(v)), 0))
+
+    rows = [[str(v) for v in vertical], [str(h) for h in horizontal]]
+    rows += [[f"{candela(v, h):.1f}" for v in vertical] for h in horizontal]
+    with open(path, "w", encoding="ascii") as out:
+        out.write("IESNA:LM-63-2002\n[TEST] made up\n[MANUFAC] Steradian\n[LUMINAIRE] a downlight with two wings\nTILT=NONE\n")
+        out.write(f"1 -1 1 {len(vertical)} {len(horizontal)} 1 2 0.1 0.1 0\n1 1 20\n")
+        out.writelines(" ".join(row) + "\n" for row in rows)
+
+
+def downlights():
+    """Lights from a photometric file on a wall, and a textured one."""
+    photometric("downlight.ies")
+    lamp = {"type": "goniometric", "path": "downlight.ies", "intensity": [0.02, 0.017, 0.013]}
+    dump("downlights.json", {
+        "$schema": "../docs/scene.schema.json",
+        "version": 1,
+        "comment": "Three downlights from a photometric file, turned by 0, 45 and 90 degrees, and a screen.",
+        "render": {"max_depth": 6, "spp": 256},
+        "film": {"resolution": [960, 480]},
+        "camera": {"position": [0, 1.5, 4.6], "look_at": [0, 1.25, 0], "vertical_fov": 38},
+        "textures": {"screen": {"type": "checkerboard", "color0": [0.1, 0.5, 1], "color1": [1, 0.3, 0.05],
+                                "scale": [8, 4]}},
+        "materials": {
+            "plaster": {"type": "diffuse", "reflectance": [0.75, 0.73, 0.7]},
+            "floor": {"type": "diffuse", "reflectance": [0.35, 0.3, 0.26]},
+            "metal": {"type": "conductor", "metal": "aluminium", "roughness": 0.3},
+        },
+        "objects": [
+            {"type": "rectangle", "center": [0, 1.4, 0], "half_u": [3.4, 0, 0], "half_v": [0, 1.4, 0],
+             "material": "plaster"},
+            {"type": "rectangle", "center": [0, 0, 2.5], "half_u": [3.4, 0, 0], "half_v": [0, 0, -2.5],
+             "material": "floor"},
+            {"type": "rectangle", "center": [0, 2.8, 2.5], "half_u": [3.4, 0, 0], "half_v": [0, 0, 2.5],
+             "material": "plaster"},
+            {"type": "sphere", "center": [-1.5, 0.3, 0.9], "radius": 0.3, "material": "metal"},
+            {"type": "rectangle", "center": [1.5, 0.35, 0.7], "half_u": [0.5, 0, 0], "half_v": [0, 0.25, -0.05],
+             "light": {"radiance": 6, "texture": "screen"}},
+        ],
+        "lights": [dict(lamp, position=[x, 2.7, 0.35], rotation=turn) for x, turn in ((-2, 0), (0, 45), (2, 90))],
+    })
+
+
 if __name__ == "__main__":
     cornell()
     spheres()
@@ -366,3 +415,4 @@ if __name__ == "__main__":
     hero()
     metals()
     frosted()
+    downlights()

@@ -74,7 +74,7 @@ SceneSummary summarize(const Scene& scene) {
 }
 
 const char* kind_of(const Light& light) {
-    static constexpr const char* kNames[] = {"point", "spot", "directional", "area", "environment"};
+    static constexpr const char* kNames[] = {"point", "spot", "directional", "area", "environment", "goniometric"};
     return kNames[light.index()];
 }
 

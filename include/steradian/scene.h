@@ -23,6 +23,7 @@ enum class MaterialId : uint32_t {};
 enum class MeshId : uint32_t {};
 enum class ShapeId : uint32_t {};
 enum class InstanceId : uint32_t {};
+enum class ProfileId : uint32_t {};
 
 template <class Id>
 requires std::is_enum_v<Id>
@@ -309,6 +310,25 @@ struct SpotLight {
     SpotFalloff falloff = SpotFalloff::smoothstep;
 };
 
+/// Intensities of a luminaire by direction, bilinear in the two angles (degrees): `vertical` from where the light
+/// points, `horizontal` about that. Above the last vertical angle and below the first there is nothing.
+struct IntensityProfile {
+    std::vector<float> vertical;    ///< at least two, ascending, within [0, 180]
+    std::vector<float> horizontal;  ///< one where all planes are alike; else ascending from 0 to 360, both included
+    std::vector<float> candela;     ///< plane by plane: vertical.size() for each horizontal angle; >= 0
+};
+
+/// A point with the intensities of a measured luminaire (an IES file), candela taken as W/sr.
+struct GoniometricLight {
+    Vec3 position;
+    Vec3 direction{0, -1, 0};  ///< where vertical angle 0 points
+    /// Degrees that the planes are turned about `direction`, counter-clockwise seen against it, from where plane 0 is:
+    /// at +X for a light that points down, and turned along by the shortest way for one that points elsewhere.
+    float rotation = 0;
+    Rgb intensity{1, 1, 1};  ///< W/sr per candela of the profile
+    ProfileId profile{};
+};
+
 /// From infinitely far. With an angular diameter it is a disc of even radiance in the sky, which camera rays and
 /// reflections see; the sun's is 0.53.
 struct DirectionalLight {
@@ -347,7 +367,7 @@ struct EnvironmentLight {
 };
 
 /// At most one EnvironmentLight per scene.
-using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight, EnvironmentLight>;
+using Light = std::variant<PointLight, SpotLight, DirectionalLight, AreaLight, EnvironmentLight, GoniometricLight>;
 
 // --- Cameras ---------------------------------------------------------------------------------------------------
 
@@ -412,10 +432,11 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<Light> lights;
     std::vector<Camera> cameras;
+    std::vector<IntensityProfile> profiles;
 
     /// For messages and for choosing a camera by name; parallel to the arrays above, or empty.
     struct Names {
-        std::vector<std::string> images, textures, materials, meshes, shapes, instances, lights, cameras;
+        std::vector<std::string> images, textures, materials, meshes, shapes, instances, lights, cameras, profiles;
     } names;
 };
 

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "base/text.h"
+#include "formats/ies/ies.h"
 #include "image/decode.h"
 #include "image/tone.h"
 #include "math/vector.h"
@@ -103,6 +104,20 @@ Result<ImageId> Assets::open_image(const std::string& path) {
     std::string name = path;
     const auto id = ImageId(add_named(loaded_.scene.images, loaded_.scene.names.images, std::move(*texels), name));
     images_.emplace(key, id);
+    return id;
+}
+
+Result<ProfileId> Assets::profile(std::string_view named) {
+    auto path = resolve(named);
+    if (!path) return std::move(path).error();
+    const std::string key = identity(*path);
+    if (const auto known = profiles_.find(key); known != profiles_.end()) return known->second;
+    auto profile = load_ies(*path);
+    if (!profile) return std::move(profile).error();
+    loaded_.files.push_back(*path);
+    Scene& scene = loaded_.scene;
+    const auto id = ProfileId(add_named(scene.profiles, scene.names.profiles, *std::move(profile), *path));
+    profiles_.emplace(key, id);
     return id;
 }
 

@@ -55,6 +55,8 @@ public:
     Result<std::string> resolve(std::string_view named) const;
 
     Result<ImageId> image(std::string_view named);
+    /// A photometric file (IES).
+    Result<ProfileId> profile(std::string_view named);
     /// How the texels of an image are meant when nobody says: integers as sRGB, floating point as linear.
     ColorSpace default_color_space(ImageId image) const;
 
@@ -89,6 +91,7 @@ private:
     std::string base_folder_;
     const LoadOptions& options_;
     std::map<std::string, ImageId> images_;
+    std::map<std::string, ProfileId> profiles_;
     std::map<std::string, size_t> model_index_;
     std::vector<Model> models_;
     std::optional<MaterialId> neutral_, black_, painted_;

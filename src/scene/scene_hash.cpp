@@ -18,6 +18,7 @@ public:
         list(s.lights);
         list(s.cameras);
         light_textures(s.lights);
+        profiles(s.profiles);
     }
     std::string hex() const { return hash_.hex(); }
 
@@ -27,6 +28,13 @@ private:
         for (uint32_t i = 0; i < lights.size(); ++i)
             if (const auto* area = std::get_if<AreaLight>(&lights[i]); area && area->texture)
                 put('t', i, *area->texture);
+    }
+
+    void profiles(const std::vector<IntensityProfile>& profiles) {
+        for (const IntensityProfile& profile : profiles) {
+            put('p');
+            put(profile);
+        }
     }
 
     template <class T>
@@ -122,6 +130,12 @@ private:
     void put(const EnvironmentLight& l) {
         put(l.radiance, l.image.has_value(), l.image.value_or(ImageId{}), l.color_space, l.rotation, l.samples,
             l.visible_to_camera);
+    }
+    void put(const GoniometricLight& l) { put(l.position, l.direction, l.rotation, l.intensity, l.profile); }
+    void put(const IntensityProfile& p) {
+        raw(p.vertical);
+        raw(p.horizontal);
+        raw(p.candela);
     }
     void put(const PerspectiveCamera& c) {
         put(c.position, c.look_at, c.up, c.vertical_fov, c.aperture_radius, c.focus_distance.has_value(),

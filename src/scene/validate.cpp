@@ -30,6 +30,7 @@ public:
         each("mesh", s_.meshes, s_.names.meshes);
         each("shape", s_.shapes, s_.names.shapes);
         each("object", s_.instances, s_.names.instances);
+        each("profile", s_.profiles, s_.names.profiles);
         each("light", s_.lights, s_.names.lights);
         each("camera", s_.cameras, s_.names.cameras);
         light_uniqueness();
@@ -275,6 +276,28 @@ private:
         require(l.angular_diameter == 0 || (l.angular_diameter >= float(kMinAngularDiameter) &&
                                             l.angular_diameter <= float(kMaxAngularDiameter)),
                 "the angular diameter must be 0 or between 0.001 and 90 degrees");
+    }
+    void check(const GoniometricLight& l) const {
+        point(l.position, "the position must be finite and within 1e15");
+        direction(l.direction, "the direction must be finite and not zero");
+        require(is_finite(l.rotation), "the rotation must be finite");
+        color(l.intensity, "the intensity must be finite and not negative");
+        refers(l.profile, s_.profiles, "profile");
+    }
+    void check(const IntensityProfile& p) const {
+        const auto ascend = [](const std::vector<float>& angles, float most) {
+            for (size_t i = 0; i + 1 < angles.size(); ++i)
+                if (!(angles[i] < angles[i + 1])) return false;
+            return angles.front() >= 0 && angles.back() <= most;
+        };
+        require(p.vertical.size() >= 2 && ascend(p.vertical, 180),
+                "there must be two vertical angles or more, ascending within 0 to 180 degrees");
+        const std::vector<float>& h = p.horizontal;
+        require(h.size() == 1 || (h.size() > 1 && h.front() == 0 && h.back() == 360 && ascend(h, 360)),
+                "horizontal angles must ascend from 0 to 360 degrees, or there must be one");
+        require(p.candela.size() == p.vertical.size() * h.size(), "there must be a value for each pair of angles");
+        require(std::all_of(p.candela.begin(), p.candela.end(), [](float c) { return is_finite(c) && c >= 0; }),
+                "values must be finite and not negative");
     }
     void samples(uint32_t n) const {
         require(n >= 1 && n <= kMaxLightSamples, "the number of light samples must be between 1 and 4096");

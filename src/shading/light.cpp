@@ -3,6 +3,7 @@
 #include "shading/environment.h"
 #include "shading/light/area.h"
 #include "shading/light/directional.h"
+#include "shading/light/goniometric.h"
 #include "shading/light/infinite.h"
 #include "shading/light/point.h"
 #include "shading/light/spot.h"

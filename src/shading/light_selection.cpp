@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "math/elementary.h"
+#include "scene/intensity_profile.h"
 #include "shading/light/mesh_emitter.h"
 #include "shading/shading_scene.h"
 
@@ -78,6 +79,14 @@ public:
         const double outer = light.outer_angle * (std::numbers::pi / 180);
         out.bounds.cone = {data_.direction, outer, 0, false};
         out.flux = 2 * std::numbers::pi * mean(light.intensity) * (1 - (data_.cos_inner + data_.cos_outer) / 2);
+        return out;
+    }
+    Shining operator()(const GoniometricLight& light) const {
+        const IntensityProfile& profile = scene_.scene.profiles[index(light.profile)];
+        Shining out{at_point(light.position, mean(light.intensity) * peak_intensity(profile))};
+        const double widest = lit_angle(profile) * (std::numbers::pi / 180);
+        if (widest < std::numbers::pi) out.bounds.cone = {data_.axes.down, widest, 0, false};
+        out.flux = mean(light.intensity) * total_flux(profile);
         return out;
     }
     Shining operator()(const AreaLight& light) const {

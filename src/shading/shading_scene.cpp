@@ -194,6 +194,17 @@ public:
         data().radiance = {scaled(light.irradiance.r), scaled(light.irradiance.g), scaled(light.irradiance.b)};
         scene_.suns.push_back(current());
     }
+    void operator()(const GoniometricLight& light) {
+        const Vec3d down = normalize(Vec3d(light.direction));
+        // +X, turned by the shortest way from -Y to `down`; a light that points up is turned over about +X.
+        const double c = 1 - down.y;
+        const Vec3d x = c > 1e-12 ? Vec3d{1 - down.x * down.x / c, -down.x * (down.y - 1) / c, -down.x * down.z / c}
+                                  : Vec3d{1, 0, 0};
+        const Vec3d y = cross(x, down);
+        const double angle = light.rotation * (std::numbers::pi / 180), cosine = math::cos(angle),
+                     sine = math::sin(angle);
+        data().axes = {down, x * cosine + y * sine, y * cosine - x * sine};
+    }
     void operator()(const AreaLight& light) {
         scene_.instances[index(light.instance)].area_light = current();
         scene_.hides_instances = scene_.hides_instances || !light.visible_to_camera;

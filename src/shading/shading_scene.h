@@ -23,6 +23,11 @@ class EnvironmentTable;  // the environment's radiance and its sampling distribu
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 inline constexpr uint32_t kNoRelief = 0xffffffffu;
 
+/// The axes of a goniometric light, unit and at right angles: vertical angle 0, horizontal angle 0 and 90 degrees.
+struct LightAxes {
+    Vec3d down{0, -1, 0}, zero{1, 0, 0}, quarter{0, 0, -1};
+};
+
 struct ShadingScene {
     Scene scene;
 
@@ -48,6 +53,7 @@ struct ShadingScene {
         double mean_texture = 1;              ///< for area lights: TextureMeans::whole
         Vec3d direction;                      ///< for spots and directional lights: where they point, unit length
         double cos_inner = 1, cos_outer = 1;  ///< for spots
+        LightAxes axes;                       ///< for goniometric lights
         double one_minus_cos = 0;             ///< for directional lights: of half the angular diameter
         Rgb radiance;                         ///< for directional lights with an angular diameter
         bool of_material = false;             ///< an area light that emits what its material does (emission.h)

@@ -27,6 +27,7 @@ struct Expected {
 struct CaseFile {
     std::string name;
     Image image;
+    std::string text = {};  ///< what is in the file, where it is no image
 };
 
 struct Case {
@@ -50,6 +51,7 @@ std::vector<Case> area_light_cases();
 std::vector<Case> emitter_side_cases();
 std::vector<Case> environment_cases();
 std::vector<Case> sun_cases();
+std::vector<Case> goniometric_cases();
 std::vector<Case> specular_cases();
 std::vector<Case> path_cases();
 std::vector<Case> opacity_cases();

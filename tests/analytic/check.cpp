@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 #include "steradian/image_io.h"
@@ -140,7 +141,11 @@ Judgement judge_statistics(const Case& c, const PreparedCase& prepared) {
 
 LoadedScene load_case(const std::string& scene_text, const std::vector<CaseFile>& files) {
     const test::TemporaryFolder folder;
-    for (const CaseFile& file : files) take(write_image(folder.file(file.name), file.image));
+    for (const CaseFile& file : files)
+        if (file.text.empty())
+            take(write_image(folder.file(file.name), file.image));
+        else
+            std::ofstream(folder.file(file.name), std::ios::binary) << file.text;
     return take(load_scene_json(scene_text, "scene.json", folder.path().string()));
 }
 

@@ -25,6 +25,7 @@ TEST(ClosedForms, DeltaLights) { expect_all(delta_light_cases()); }
 TEST(ClosedForms, AreaLights) { expect_all(area_light_cases()); }
 TEST(ClosedForms, EmitterSides) { expect_all(emitter_side_cases()); }
 TEST(ClosedForms, Environments) { expect_all(environment_cases()); }
+TEST(ClosedForms, GoniometricLights) { expect_all(goniometric_cases()); }
 TEST(ClosedForms, Suns) { expect_all(sun_cases()); }
 TEST(ClosedForms, SpecularSurfaces) { expect_all(specular_cases()); }
 TEST(ClosedForms, Paths) { expect_all(path_cases()); }

@@ -66,6 +66,10 @@ int write_all(const std::filesystem::path& folder) {
         write_text(folder / (c.id + ".json"), c.scene);
         for (const CaseFile& file : c.files) {
             if (!written.insert(file.name).second) continue;
+            if (!file.text.empty()) {
+                write_text(folder / file.name, file.text);
+                continue;
+            }
             if (const Status status = write_image((folder / file.name).string(), file.image); !status)
                 throw std::runtime_error(status.error().str());
         }

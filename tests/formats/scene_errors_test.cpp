@@ -397,6 +397,8 @@ TEST(SceneErrors, Environments) {
                   "'rotation' has no effect in this environment light", "remove it");
     refused_light("{\"type\": \"environment\", \"radiance\": 1, §\"color_space\": \"linear\"}",
                   "'color_space' has no effect", "remove it");
+    refused_object("{\"type\": \"sphere\", \"light\": {\"radiance\": 1, \"texture\": §1}}",
+                   "'texture' must be the name of a texture or a texture, got 1");
     refused_light("{\"type\": \"environment\", \"path\": §\"sky.exr\"}", "/nonexistent/sky.exr: cannot open the file");
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "formats/scene_test.h"
 #include "math/vector.h"
@@ -414,6 +415,50 @@ TEST_F(SceneFiles, MtlBecomesMaterials) {
     EXPECT_EQ(s.images.size(), 1u);
     // The index of refraction that was clamped and the half transparent material are told.
     EXPECT_EQ(loaded->diagnostics.warnings().size(), 2u);
+}
+
+TEST_F(SceneFiles, GoniometricLights) {
+    spit(folder_.path() / "lamp.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 180\n0\n50 50\n");
+    const auto light = [&](std::string_view members) {
+        return "{\"type\": \"goniometric\", \"path\": \"lamp.ies\", \"position\": [0, 3, 0]" + std::string(members) +
+               "}";
+    };
+    const LoadedScene loaded = load(scene_with("\"lights\": [" + light("") + ", " +
+                                               light(", \"look_at\": [2, 3, 0], \"rotation\": 30, \"intensity\": 2") +
+                                               ", " + light(", \"direction\": [0, 5, 0], \"flux\": [1, 2, 4]") + "]"));
+    EXPECT_EQ(loaded.scene.profiles.size(), 1u);  // of one file
+    EXPECT_EQ(loaded.files.size(), 1u);
+    const auto at = [&](size_t i) { return std::get<GoniometricLight>(loaded.scene.lights.at(i)); };
+    EXPECT_EQ(at(0).direction, (Vec3{0, -1, 0}));
+    EXPECT_EQ(at(0).intensity, (Rgb{1, 1, 1}));
+    EXPECT_EQ(at(0).rotation, 0);
+    EXPECT_EQ(at(1).direction, (Vec3{1, 0, 0}));
+    EXPECT_EQ(at(1).rotation, 30);
+    EXPECT_EQ(at(1).intensity, (Rgb{2, 2, 2}));
+    EXPECT_EQ(at(2).direction, (Vec3{0, 5, 0}));
+    EXPECT_FLOAT_EQ(at(2).intensity.g, static_cast<float>(2 / (4 * std::numbers::pi * 50)));
+
+    refused(scene_with_light("§{\"type\": \"goniometric\", \"path\": \"lamp.ies\"}"), "missing key 'position'");
+    refused(scene_with_light("§{\"type\": \"goniometric\", \"position\": [0, 0, 0]}"), "missing key 'path'");
+    refused(scene_with_light(light(", \"intensity\": 1, §\"flux\": 1")), "either 'intensity' or 'flux'");
+    refused(scene_with_light(light(", \"direction\": [1, 0, 0], §\"look_at\": [1, 1, 1]")),
+            "either 'direction' or 'look_at'");
+    refused(scene_with_light("{\"type\": \"goniometric\", \"position\": [0, 0, 0], \"path\": §\"none.ies\"}"),
+            "none.ies: cannot open the file");
+    spit(folder_.path() / "dark.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 180\n0\n0 0\n");
+    refused(
+        scene_with_light("{\"type\": \"goniometric\", \"position\": [0, 0, 0], \"flux\": 1, \"path\": §\"dark.ies\"}"),
+        "no flux to scale");
+    // What is wrong in the file is shown there.
+    spit(folder_.path() / "bad.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 x\n0\n0 0\n");
+    const auto bad =
+        load_text(scene_with_light("{\"type\": \"goniometric\", \"position\": [0, 0, 0], \"path\": \"bad.ies\"}"),
+                  folder_.path().string());
+    ASSERT_FALSE(bad.ok());
+    EXPECT_EQ(bad.error().where.line, 4u);
+    EXPECT_EQ(bad.error().where.column, 3u);
+    EXPECT_NE(bad.error().where.file.find("bad.ies"), std::string::npos);
+    EXPECT_FALSE(bad.error().excerpt.empty());
 }
 
 TEST_F(SceneFiles, AMissingTextureIsReportedWhereTheMaterialNamesIt) {

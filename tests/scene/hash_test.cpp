@@ -35,7 +35,8 @@ Scene full_scene() {
     add<ShapeId>(s.shapes, Shape(Rectangle{}));
     add<ShapeId>(s.shapes, Shape(Disk{}));
     s.instances.push_back({});
-    s.lights = {PointLight{}, SpotLight{}, DirectionalLight{}, AreaLight{}, EnvironmentLight{}};
+    s.lights = {PointLight{}, SpotLight{}, DirectionalLight{}, AreaLight{}, EnvironmentLight{}, GoniometricLight{}};
+    s.profiles = {IntensityProfile{{0, 180}, {0}, {1, 2}}};
     s.cameras = {PerspectiveCamera{}, OrthographicCamera{}, PanoramaCamera{}, FisheyeCamera{}};
     return s;
 }
@@ -165,6 +166,13 @@ std::vector<Change> changes() {
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).image = ImageId{0}; },
         [](Scene& s) { std::get<EnvironmentLight>(s.lights[4]).rotation = 90; },
         [](Scene& s) { std::get<AreaLight>(s.lights[3]).texture = TextureId{0}; },
+        [](Scene& s) { std::get<GoniometricLight>(s.lights[5]).direction.x = 1; },
+        [](Scene& s) { std::get<GoniometricLight>(s.lights[5]).rotation = 1; },
+        [](Scene& s) { std::get<GoniometricLight>(s.lights[5]).intensity.r = 2; },
+        [](Scene& s) { s.profiles[0].vertical[1] = 90; },
+        [](Scene& s) { s.profiles[0].horizontal[0] = 1; },
+        [](Scene& s) { s.profiles[0].candela[1] = 3; },
+        [](Scene& s) { s.profiles.push_back({}); },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).up.x = 1; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).aperture_radius = 1; },
         [](Scene& s) { std::get<PerspectiveCamera>(s.cameras[0]).focus_distance = 1.0f; },

@@ -103,6 +103,8 @@ inline constexpr Key kLookAt[] = {"origin", "target", "up"};
 inline constexpr Key kPointLight[] = {"type", "name", "position", "intensity", "flux"};
 inline constexpr Key kSpotLight[] = {"type",      "name", "position",    "direction",  "look_at",
                                      "intensity", "flux", "inner_angle", "outer_angle"};
+inline constexpr Key kGoniometricLight[] = {"type",    "name",     "path",      "position", "direction",
+                                            "look_at", "rotation", "intensity", "flux"};
 inline constexpr Key kDirectionalLight[] = {
     "type", "name", "direction", "irradiance", "angular_diameter", "visible_to_camera"};
 inline constexpr Key kAreaLight[] = {"type",    "name",      "object",        "radiance",
@@ -153,7 +155,8 @@ inline constexpr ObjectSpec kLightSpecs[] = {{"point_light", keys::kPointLight},
                                              {"spot_light", keys::kSpotLight},
                                              {"directional_light", keys::kDirectionalLight},
                                              {"area_light", keys::kAreaLight},
-                                             {"environment_light", keys::kEnvironmentLight}};
+                                             {"environment_light", keys::kEnvironmentLight},
+                                             {"goniometric_light", keys::kGoniometricLight}};
 
 // The values of "type", in the order of the specifications above and of the enumerations that the readers use.
 inline constexpr std::string_view kTextureTypes[] = {"constant", "image", "checkerboard", "vertex_color"};
@@ -161,7 +164,8 @@ inline constexpr std::string_view kMaterialTypes[] = {
     "diffuse", "refraction", "glass", "mirror", "conductor", "thin_glass", "diffuse_transmission", "open_pbr", "mix"};
 inline constexpr std::string_view kShapeTypes[] = {"mesh", "sphere", "rectangle", "disk"};
 inline constexpr std::string_view kObjectTypes[] = {"mesh", "sphere", "rectangle", "disk", "instance"};
-inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional", "area", "environment"};
+inline constexpr std::string_view kLightTypes[] = {"point", "spot",        "directional",
+                                                   "area",  "environment", "goniometric"};
 
 inline constexpr std::string_view kCameraTypes[] = {"perspective", "orthographic", "panorama", "fisheye"};
 inline constexpr std::string_view kFisheyeProjections[] = {"equidistant", "equisolid"};

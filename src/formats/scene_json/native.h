@@ -83,6 +83,7 @@ private:
     void read_directional_light(Value value);
     void read_area_light(Value value);
     void read_environment_light(Value value);
+    void read_goniometric_light(Value value);
     /// "intensity", or "flux" times `per_flux`: one of the two.
     Rgb read_intensity(ObjectReader& reader, double per_flux) const;
 

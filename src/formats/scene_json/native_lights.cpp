@@ -2,6 +2,7 @@
 
 #include "formats/scene_json/native.h"
 #include "math/elementary.h"
+#include "scene/intensity_profile.h"
 
 namespace steradian::scene_json {
 namespace {
@@ -18,7 +19,7 @@ Vec3 read_aim(ObjectReader& reader, Vec3 position) {
     const Source& source = reader.source();
     const auto look_at = reader.find("look_at");
     if (look_at && reader.find("direction"))
-        source.fail(reader.key_offset("look_at"), "a spot light has either 'direction' or 'look_at', not both");
+        source.fail(reader.key_offset("look_at"), "a light has either 'direction' or 'look_at', not both");
     if (!look_at && !reader.find("direction"))
         source.fail(reader.offset(), "missing key 'direction' in the light",
                     "or give 'look_at', the point that it is aimed at");
@@ -49,8 +50,11 @@ void NativeLoader::read_lights(Value value) {
             case 3:
                 read_area_light(light);
                 break;
-            default:
+            case 4:
                 read_environment_light(light);
+                break;
+            default:
+                read_goniometric_light(light);
                 break;
         }
     }
@@ -155,6 +159,27 @@ void NativeLoader::read_environment_light(Value value) {
         const size_t chosen = space ? json::read_choice(source_, *space, "'color_space'", kColorSpaces) : 0;
         light.image = source_.take(assets_.image(path.path), path.offset);
         light.color_space = space ? static_cast<ColorSpace>(chosen) : assets_.default_color_space(*light.image);
+    }
+    reader.finish();
+    assets_.add_light(light, name);
+}
+
+void NativeLoader::read_goniometric_light(Value value) {
+    ObjectReader reader(source_, value, kLightSpecs[5], "this goniometric light");
+    reader.require("type");
+    const std::string name(reader.string_or("name", {}));
+    GoniometricLight light;
+    light.position = reader.vec3("position");
+    if (reader.find("direction") || reader.find("look_at")) light.direction = read_aim(reader, light.position);
+    light.rotation = reader.number_or("rotation", 0, json::kAnyAngle);
+    const NamedPath path = read_path(reader);
+    light.profile = source_.take(assets_.profile(path.path), path.offset);
+    if (reader.find("flux")) {
+        const double total = total_flux(scene().profiles[index(light.profile)]);
+        if (!(total > 0)) source_.fail(path.offset, "all values of this file are 0: there is no flux to scale");
+        light.intensity = read_intensity(reader, 1 / total);
+    } else {
+        light.intensity = reader.color_or("intensity", {1, 1, 1}, json::kEnergy);
     }
     reader.finish();
     assets_.add_light(light, name);
