@@ -179,7 +179,7 @@ struct Trial {
 std::vector<Trial> trials() {
     std::vector<Trial> out{{"shadows, direct", shadows(), up_to(0.06f, kDefaultMostSamples, 48)},
                            {"shadows, few pixels, direct", shadows(), up_to(0.1f), true},
-                           {"glass and mirrors, path", test::everything_scene(), up_to(0.1f, kDefaultMostSamples, 48)},
+                           {"glass and mirrors, path", test::everything_scene(), up_to(0.1f)},
                            {"behind a wall, path", behind_a_wall(), up_to(0.1f, kDefaultMostSamples, 48)},
                            {"beads, path", beads(), up_to(0.1f, kDefaultMostSamples, 48)},
                            {"shadows, path, independent", shadows(), up_to(0.1f, kDefaultMostSamples, 48)}};
