@@ -6,8 +6,8 @@
 #include <span>
 
 #include "accel/box.h"
-#include "accel/simd.h"
 #include "accel/wide_node.h"
+#include "math/simd.h"
 
 namespace steradian {
 

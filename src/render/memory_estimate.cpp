@@ -77,7 +77,7 @@ uint64_t table_bytes(const Scene& scene, const Light& light) {
         if (index(shape) >= scene.shapes.size()) return 0;
         const auto* mesh = std::get_if<MeshId>(&scene.shapes[index(shape)]);
         if (!mesh || index(*mesh) >= scene.meshes.size()) return 0;
-        return scene.meshes[index(*mesh)].indices.size() / 3 * LightTree::kBytesPerLight;
+        return LightTree::bytes(scene.meshes[index(*mesh)].indices.size() / 3);
     }
     if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky && sky->image) {
         if (index(*sky->image) >= scene.images.size()) return 0;
@@ -110,10 +110,10 @@ MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& setting
     MemoryEstimate out;
     out.scene = scene_bytes(scene);
     const TriangleBytes triangle = triangle_bytes(execution);
-    out.hierarchy =
-        triangles * triangle.held + shapes * kShapeBytes + instances * kInstanceBytes +
-        instances * sizeof(ShadingScene::InstanceData) +
-        scene.lights.size() * (sizeof(ShadingScene::LightData) + LightTree::kBytesPerLight + sizeof(double));
+    out.hierarchy = triangles * triangle.held + shapes * kShapeBytes + instances * kInstanceBytes +
+                    instances * sizeof(ShadingScene::InstanceData) +
+                    scene.lights.size() * (sizeof(ShadingScene::LightData) + sizeof(double)) +
+                    LightTree::bytes(scene.lights.size());
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
     out.hierarchy += mip_map_bytes(scene);
     out.build = triangles * triangle.build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;

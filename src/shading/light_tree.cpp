@@ -10,10 +10,10 @@ namespace steradian {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-constexpr uint64_t kNoTrail = ~uint64_t{0};  ///< of lights that are not in the tree
 constexpr int kBins = 12;
-/// From here on nodes are halved by count, so that no trail is longer than 32 + 31 steps.
+/// After so many divisions lights are halved by count, so that no way down is longer than kDeepest + 31 steps.
 constexpr uint32_t kDeepest = 32;
+constexpr size_t kLongestWay = kDeepest + 31;
 
 double clamped_acos(double x) { return math::acos(clamp_to(x, -1.0, 1.0)); }
 
@@ -66,23 +66,21 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
             a.strength + b.strength};
 }
 
-LightNode LightNode::from(const LightBounds& b, double total_strength) {
+void FourLights::set(int lane, const LightBounds& b, double total_strength) {
     constexpr double kLeastAngle = 0.01;  // much more than kCosineSlack leaves open
-    LightNode out;
-    out.center = static_cast<Vec3>(b.lo * 0.5 + b.hi * 0.5);
-    const Vec3d c = out.center;
+    const Vec3 c = static_cast<Vec3>(b.lo * 0.5 + b.hi * 0.5), direction = static_cast<Vec3>(b.cone.axis);
+    center[0][lane] = c.x, center[1][lane] = c.y, center[2][lane] = c.z;
     const Vec3d reach{max_of(b.hi.x - c.x, c.x - b.lo.x), max_of(b.hi.y - c.y, c.y - b.lo.y),
                       max_of(b.hi.z - c.z, c.z - b.lo.z)};
-    out.radius2 = static_cast<float>(dot(reach, reach) * (1 + 1e-5));
-    out.axis = static_cast<Vec3>(b.cone.axis);
+    radius2[lane] = static_cast<float>(clamp_to(dot(reach, reach) * (1 + 1e-5), 1e-30, 1e37));
+    axis[0][lane] = direction.x, axis[1][lane] = direction.y, axis[2][lane] = direction.z;
     const double theta_e = max_of(b.cone.theta_e, kLeastAngle);
     const double theta_o = b.cone.theta_o + theta_e > kPiD - kLeastAngle ? kPiD : b.cone.theta_o;
-    out.cos_o = static_cast<float>(math::cos(theta_o));
-    out.sin_o = static_cast<float>(math::sin(theta_o));
-    out.cos_e = static_cast<float>(math::cos(theta_e));
-    out.strength = static_cast<float>(clamp_to(b.strength / total_strength, 1e-30, 1.0));
-    out.two_sided = b.cone.two_sided;
-    return out;
+    cos_o[lane] = static_cast<float>(math::cos(theta_o));
+    sin_o[lane] = static_cast<float>(math::sin(theta_o));
+    cos_e[lane] = static_cast<float>(math::cos(theta_e));
+    strength[lane] = static_cast<float>(clamp_to(b.strength / total_strength, 1e-30, 1.0));
+    two_sided[lane] = b.cone.two_sided ? 1 : 0;
 }
 
 class LightTreeBuilder {
@@ -93,19 +91,21 @@ public:
         for (uint32_t i = 0; i < lights_.size(); ++i)
             if (lights_[i].strength > 0) order_.push_back(i);
         if (order_.empty()) return;
-        out_.trails_.assign(lights_.size(), kNoTrail);
-        out_.nodes_.reserve(2 * order_.size() - 1);
+        out_.places_.assign(lights_.size(), {});
         scratch_.resize(order_.size());
-        const Range all{0, static_cast<uint32_t>(order_.size())};
+        const Range all{0, static_cast<uint32_t>(order_.size()), 0};
         const LightBounds whole = bounds(all);
         total_ = whole.strength;
-        out_.nodes_.push_back(LightNode::from(whole, total_));
-        build(0, all, 0, 0);
+        out_.whole_.set(0, whole, total_);
+        build(all, {});
+        out_.nodes_.shrink_to_fit();
+        out_.parents_.shrink_to_fit();
     }
 
 private:
     struct Range {
         uint32_t begin, end;
+        uint32_t depth;  ///< divisions above it
         uint32_t size() const { return end - begin; }
     };
     struct Split {
@@ -163,8 +163,8 @@ private:
     }
 
     /// Where the second half of the range begins, which is put in order.
-    uint32_t divide(Range r, uint32_t depth) {
-        if (depth < kDeepest && r.size() > 2) {
+    uint32_t divide(Range r) {
+        if (r.depth < kDeepest && r.size() > 2) {
             const Centres c = centres(r);
             double longest = 0;
             for (int axis = 0; axis < 3; ++axis) longest = max_of(longest, c.hi[axis] - c.lo[axis]);
@@ -189,19 +189,35 @@ private:
         return below;
     }
 
-    void build(uint32_t node, Range r, uint32_t depth, uint64_t trail) {
-        out_.nodes_[node].lights = r.size();
-        if (r.size() == 1) {
-            out_.nodes_[node].child = order_[r.begin];
-            out_.trails_[order_[r.begin]] = trail;
-            return;
+    /// The range as the children of one node: the largest is divided again as long as there is room.
+    std::vector<Range> children(Range r) {
+        std::vector<Range> out{r};
+        while (out.size() < LightNode::kWidth) {
+            const auto largest =
+                std::max_element(out.begin(), out.end(), [](Range a, Range b) { return a.size() < b.size(); });
+            if (largest->size() == 1) break;
+            const Range whole = *largest;
+            const uint32_t middle = divide(whole);
+            *largest = {whole.begin, middle, whole.depth + 1};
+            out.insert(largest + 1, {middle, whole.end, whole.depth + 1});
         }
-        const uint32_t middle = divide(r, depth);
-        const Range halves[2] = {{r.begin, middle}, {middle, r.end}};
-        const auto child = static_cast<uint32_t>(out_.nodes_.size());
-        out_.nodes_[node].child = child;
-        for (const Range& half : halves) out_.nodes_.push_back(LightNode::from(bounds(half), total_));
-        for (uint32_t k = 0; k < 2; ++k) build(child + k, halves[k], depth + 1, trail | uint64_t{k} << depth);
+        return out;
+    }
+
+    uint32_t build(Range r, LightTree::Place parent) {
+        const auto node = static_cast<uint32_t>(out_.nodes_.size());
+        out_.nodes_.emplace_back();
+        out_.parents_.push_back(parent);
+        const std::vector<Range> ranges = children(r);
+        for (uint32_t k = 0; k < ranges.size(); ++k) {
+            const uint32_t count = ranges[k].size(), light = order_[ranges[k].begin];
+            out_.nodes_[node].children[k / 4].set(static_cast<int>(k % 4), bounds(ranges[k]), total_);
+            out_.nodes_[node].lights[k] = count;
+            const uint32_t child = count == 1 ? light : build(ranges[k], {node, k});
+            out_.nodes_[node].child[k] = child;
+            if (count == 1) out_.places_[light] = {node, k};
+        }
+        return node;
     }
 
     std::span<const LightBounds> lights_;
@@ -214,57 +230,80 @@ LightTree::LightTree(std::span<const LightBounds> lights) { LightTreeBuilder(lig
 
 namespace {
 
-/// Of both, since the next one is known only after much arithmetic, and lies far away in a large tree.
-inline void prefetch_children(const LightNode* nodes, const LightNode* children) {
-    for (int k = 0; k < 2; ++k) {
-        if (children[k].lights == 1) continue;
-        const auto* next = reinterpret_cast<const char*>(nodes + children[k].child);
-        __builtin_prefetch(next);
-        __builtin_prefetch(next + 64);
-    }
+void prefetch(const LightNode& node) {
+    const auto* at = reinterpret_cast<const char*>(&node);
+    for (size_t i = 0; i < sizeof node; i += 64) __builtin_prefetch(at + i);
 }
 
-/// How many of a node's `values` its first child has; nothing where neither counts.
-std::optional<uint64_t> share_of_first(const LightNode* children, const LightReceiver& at, uint64_t values) {
-    const LightImportance a = light_importance(children[0], at), b = light_importance(children[1], at);
-    if (a.numerator == 0 && b.numerator == 0) return std::nullopt;
-    if (b.numerator == 0) return values;
-    if (a.numerator == 0) return 0;
-    const double to_a = a.numerator * b.distance2, to_b = b.numerator * a.distance2;
-    const auto share = static_cast<uint64_t>(static_cast<double>(values) * (to_a / (to_a + to_b)));
-    return clamp_to<uint64_t>(share, children[0].lights, values - children[1].lights);
+/// How a node's children divide its values: child k has those from end[k - 1] (0 for the first) to end[k].
+struct Runs {
+    uint64_t end[LightNode::kWidth];
+    uint64_t begin(uint32_t k) const { return k > 0 ? end[k - 1] : 0; }
+    uint64_t values(uint32_t k) const { return end[k] - begin(k); }
+};
+
+/// False where no child counts. Without branches: none of them could be predicted.
+bool divide(const LightNode& node, const LightReceiver& at, uint64_t values, Runs& out) {
+    double importance[LightNode::kWidth];
+    for (int k = 0; k < LightNode::kWidth; k += 4) light_importance(node.children[k / 4], at, importance + k);
+    // Up to each child, itself included; of either half by itself first, so that fewer sums wait for each other.
+    double sum[LightNode::kWidth];
+    constexpr int kHalf = LightNode::kWidth / 2;
+    for (int k = 0; k < kHalf; ++k) {
+        sum[k] = importance[k] + (k > 0 ? sum[k - 1] : 0);
+        sum[kHalf + k] = importance[kHalf + k] + (k > 0 ? sum[kHalf + k - 1] : 0);
+    }
+    for (int k = kHalf; k < LightNode::kWidth; ++k) sum[k] += sum[kHalf - 1];
+    const double total = sum[LightNode::kWidth - 1];
+    uint64_t lights = 0;
+    for (int k = 0; k < LightNode::kWidth; ++k) out.end[k] = lights += node.lights[k] * uint64_t(importance[k] > 0);
+    if (!(total > 0)) return false;
+    const auto rest = static_cast<double>(values - lights);
+    // A little more than its share, so that the last one that counts has all of the rest in spite of rounding.
+    const double per_importance = rest / total * (1 + 0x1p-50);
+    for (int k = 0; k < LightNode::kWidth; ++k)
+        out.end[k] += static_cast<uint64_t>(static_cast<int64_t>(min_of(sum[k] * per_importance, rest)));
+    return true;
 }
 
 }  // namespace
 
+bool LightTree::reaches(const LightReceiver& at) const noexcept {
+    double importance[4];
+    light_importance(whole_, at, importance);
+    return importance[0] > 0;
+}
+
 std::optional<ChosenLight> LightTree::choose(const LightReceiver& at, uint32_t choice, uint64_t values) const noexcept {
-    if (!reaches(at)) return std::nullopt;
-    const LightNode* node = nodes_.data();
+    if (empty()) return std::nullopt;
     uint64_t x = choice;
-    while (node->lights > 1) {
-        const LightNode* children = nodes_.data() + node->child;
-        prefetch_children(nodes_.data(), children);
-        const std::optional<uint64_t> first = share_of_first(children, at, values);
-        if (!first) return std::nullopt;
-        const bool second = x >= *first;
-        x -= second ? *first : 0;
-        values = second ? values - *first : *first;
-        node = children + second;
+    for (uint32_t node = 0;;) {
+        Runs runs;
+        if (!divide(nodes_[node], at, values, runs)) return std::nullopt;
+        uint32_t k = 0;
+        for (int i = 0; i + 1 < LightNode::kWidth; ++i) k += x >= runs.end[i];
+        x -= runs.begin(k);
+        values = runs.values(k);
+        const uint32_t child = nodes_[node].child[k];
+        if (nodes_[node].lights[k] == 1) return ChosenLight{child, static_cast<double>(values) * 0x1p-32};
+        node = child;
+        prefetch(nodes_[node]);
     }
-    return ChosenLight{node->child, static_cast<double>(values) * 0x1p-32};
 }
 
 double LightTree::probability(const LightReceiver& at, uint32_t light, uint64_t values) const noexcept {
-    if (light >= trails_.size() || trails_[light] == kNoTrail || !reaches(at)) return 0;
-    const LightNode* node = nodes_.data();
-    for (uint64_t trail = trails_[light]; node->lights > 1 && values > 0; trail >>= 1) {
-        const LightNode* children = nodes_.data() + node->child;
-        prefetch_children(nodes_.data(), children);
-        const std::optional<uint64_t> first = share_of_first(children, at, values);
-        if (!first) return 0;
-        const uint64_t second = trail & 1;
-        values = second ? values - *first : *first;
-        node = children + second;
+    if (light >= places_.size() || places_[light].node == kNowhere) return 0;
+    std::array<Place, kLongestWay> way;
+    size_t steps = 0;
+    for (Place place = places_[light]; place.node != kNowhere; place = parents_[place.node]) {
+        prefetch(nodes_[place.node]);
+        way[steps++] = place;
+    }
+    while (steps-- > 0 && values > 0) {
+        const Place place = way[steps];
+        Runs runs;
+        if (!divide(nodes_[place.node], at, values, runs)) return 0;
+        values = runs.values(place.child);
     }
     return static_cast<double>(values) * 0x1p-32;
 }

@@ -1,9 +1,10 @@
-// A binary tree over lights, to choose one by how much it may contribute at a point (see light_bounds.h).
+// A tree over lights, to choose one by how much it may contribute at a point (see light_bounds.h). Its nodes have up to
+// eight children, which are looked at four at a time.
 //
 // A light is chosen with 32 bits and no rounding: a node has a run of the 2^32 values, its children divide it by their
 // importance, and the probability of a light is the length of its run. So probabilities are exact and sum to 1, and
-// they are computed a second time, for a light that was found otherwise, to the same bits. No child that counts at all
-// gets less than one value for each light below it.
+// they are computed a second time, for a light that was found otherwise, to the same bits. A child that counts at all
+// gets one value for each light below it, and its share of the rest.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "base/large_array.h"
 #include "shading/light_bounds.h"
 
 namespace steradian {
@@ -23,6 +25,13 @@ struct ChosenLight {
     double probability = 0;  ///< a multiple of 2^-32
 };
 
+struct alignas(64) LightNode {
+    static constexpr int kWidth = 8;
+    FourLights children[kWidth / 4];
+    uint32_t lights[kWidth] = {};  ///< below each child: 0 where there is none, 1 for a leaf
+    uint32_t child[kWidth] = {};   ///< the light's index for a leaf, else the node's
+};
+
 class LightTree {
 public:
     LightTree() = default;
@@ -31,13 +40,16 @@ public:
     explicit LightTree(std::span<const LightBounds> lights);
 
     bool empty() const noexcept { return nodes_.empty(); }
-    uint64_t bytes() const noexcept { return nodes_.size() * sizeof(LightNode) + trails_.size() * sizeof(uint64_t); }
-    static constexpr uint64_t kBytesPerLight = 2 * sizeof(LightNode) + sizeof(uint64_t);
+    uint64_t bytes() const noexcept {
+        return nodes_.size() * (sizeof(LightNode) + sizeof(Place)) + places_.size() * sizeof(Place);
+    }
+    /// At most: nodes that are not full have leaves only, so there are no more than 4/7 as many as lights, and one.
+    static constexpr uint64_t bytes(uint64_t lights) {
+        return (lights * 4 / 7 + 1) * (sizeof(LightNode) + sizeof(Place)) + lights * sizeof(Place);
+    }
 
     /// Not whether there is a light, but whether their bounds as a whole let any contribute.
-    bool reaches(const LightReceiver& at) const noexcept {
-        return !empty() && light_importance(nodes_[0], at).numerator > 0;
-    }
+    bool reaches(const LightReceiver& at) const noexcept;
 
     /// `choice`: uniform in [0, values), values at least the number of lights and at most 2^32. Nothing where no light
     /// can reach the receiver, and sometimes where one could: bounds of many lights promise more than those of each.
@@ -47,13 +59,19 @@ public:
     /// With which choose() finds `light`. 0 where it cannot contribute.
     double probability(const LightReceiver& at, uint32_t light, uint64_t values = kLightValues) const noexcept;
 
-    const std::vector<LightNode>& nodes() const noexcept { return nodes_; }
+    const LargeArray<LightNode>& nodes() const noexcept { return nodes_; }
 
 private:
     friend class LightTreeBuilder;
-    std::vector<LightNode> nodes_;  ///< siblings are neighbours; the root is the first
-    /// Of each light the way down from the root: bit k is 1 where step k goes to the second child.
-    std::vector<uint64_t> trails_;
+    struct Place {
+        uint32_t node = kNowhere, child = 0;
+    };
+    static constexpr uint32_t kNowhere = ~0u;  ///< above the root, and of lights that are not in the tree
+
+    FourLights whole_;             ///< of all, in the first lane
+    LargeArray<LightNode> nodes_;  ///< the root is the first
+    std::vector<Place> parents_;   ///< of each node
+    std::vector<Place> places_;    ///< of each light
 };
 
 }  // namespace steradian

@@ -2,7 +2,9 @@
 // contributes is left out; and a hierarchy chooses better than chance.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "scene/emission.h"
 #include "shading/area_lights.h"
@@ -48,15 +50,16 @@ LightReceiver random_receiver(test::Random& random) {
     return out;
 }
 
-/// How many nodes that count promise what neither of their children keeps.
-int promises_broken(const LightTree& tree, const LightReceiver& at, const LightNode& node) {
-    if (node.lights == 1) return 0;
-    const LightNode* children = tree.nodes().data() + node.child;
+/// How many nodes that count promise what none of their children keeps.
+int promises_broken(const LightTree& tree, const LightReceiver& at, uint32_t node) {
+    const LightNode& n = tree.nodes()[node];
     int broken = 0, counting = 0;
-    for (int k = 0; k < 2; ++k) {
-        if (light_importance(children[k], at).numerator == 0) continue;
+    for (int k = 0; k < LightNode::kWidth; ++k) {
+        double importance[4];
+        light_importance(n.children[k / 4], at, importance);
+        if (importance[k % 4] == 0) continue;
         ++counting;
-        broken += promises_broken(tree, at, children[k]);
+        if (n.lights[k] > 1) broken += promises_broken(tree, at, n.child[k]);
     }
     return counting == 0 ? 1 : broken;
 }
@@ -70,7 +73,7 @@ TEST(LightTree, ProbabilitiesSumToOneExactlyWhereNothingIsLost) {
         const LightReceiver at = random_receiver(random);
         double sum = 0;  // exact: multiples of 2^-32
         for (uint32_t i = 0; i < n; ++i) sum += tree.probability(at, i);
-        if (tree.reaches(at) && promises_broken(tree, at, tree.nodes()[0]) == 0) {
+        if (tree.reaches(at) && promises_broken(tree, at, 0) == 0) {
             EXPECT_EQ(sum, 1) << round;
             ++exact;
         } else {
@@ -312,8 +315,11 @@ TEST(LightTree, IsTheSameTreeForTheSameLightsAndLeavesOutTheDark) {
     for (size_t i = 0; i < lights.size(); i += 3) lights[i].strength = 0;
     const LightTree a(lights), b(lights);
     ASSERT_EQ(a.nodes().size(), b.nodes().size());
-    EXPECT_EQ(a.nodes()[0].lights, 333u);
-    EXPECT_EQ(a.nodes().size(), 2u * 333 - 1);
+    EXPECT_EQ(std::accumulate(std::begin(a.nodes()[0].lights), std::end(a.nodes()[0].lights), 0u), 333u);
+    EXPECT_LE(a.bytes(), LightTree::bytes(500));
+    uint32_t leaves = 0;
+    for (const LightNode& node : a.nodes()) leaves += std::count(std::begin(node.lights), std::end(node.lights), 1u);
+    EXPECT_EQ(leaves, 333u);
     const LightReceiver at{{0, 0, 0}, {}, false};
     for (uint32_t i = 0; i < 500; ++i) EXPECT_EQ(a.probability(at, i) > 0, i % 3 != 0) << i;
     // All in one place: halved by count.

@@ -2,6 +2,7 @@
 // what the scalar expression computes. On other machines plain loops do the same.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #if defined(__SSE2__)
@@ -38,6 +39,20 @@ inline Float4 larger(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
 inline Float4 smaller(Float4 a, Float4 b) { return {_mm_min_ps(a.v, b.v)}; }
 /// Bit i where a <= b in lane i.
 inline uint32_t at_most(Float4 a, Float4 b) { return static_cast<uint32_t>(_mm_movemask_ps(_mm_cmple_ps(a.v, b.v))); }
+inline Float4 operator/(Float4 a, Float4 b) { return {_mm_div_ps(a.v, b.v)}; }
+inline Float4 sqrt(Float4 a) { return {_mm_sqrt_ps(a.v)}; }
+inline Float4 abs(Float4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
+
+/// A yes or no for each lane.
+struct Mask4 {
+    __m128 v;
+};
+/// False where one is NaN.
+inline Mask4 operator<(Float4 a, Float4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
+inline Mask4 operator&&(Mask4 a, Mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
+inline Float4 select(Mask4 which, Float4 yes, Float4 no) {
+    return {_mm_or_ps(_mm_and_ps(which.v, yes.v), _mm_andnot_ps(which.v, no.v))};
+}
 
 #elif defined(__aarch64__)
 
@@ -62,6 +77,16 @@ inline uint32_t at_most(Float4 a, Float4 b) {
     static const uint32_t kLanes[4] = {1, 2, 4, 8};
     return vaddvq_u32(vandq_u32(vcleq_f32(a.v, b.v), vld1q_u32(kLanes)));
 }
+inline Float4 operator/(Float4 a, Float4 b) { return {vdivq_f32(a.v, b.v)}; }
+inline Float4 sqrt(Float4 a) { return {vsqrtq_f32(a.v)}; }
+inline Float4 abs(Float4 a) { return {vabsq_f32(a.v)}; }
+
+struct Mask4 {
+    uint32x4_t v;
+};
+inline Mask4 operator<(Float4 a, Float4 b) { return {vcltq_f32(a.v, b.v)}; }
+inline Mask4 operator&&(Mask4 a, Mask4 b) { return {vandq_u32(a.v, b.v)}; }
+inline Float4 select(Mask4 which, Float4 yes, Float4 no) { return {vbslq_f32(which.v, yes.v, no.v)}; }
 
 #else
 
@@ -101,6 +126,30 @@ inline uint32_t at_most(Float4 a, Float4 b) {
     uint32_t mask = 0;
     for (int i = 0; i < 4; ++i) mask |= uint32_t(a.v[i] <= b.v[i]) << i;
     return mask;
+}
+inline Float4 operator/(Float4 a, Float4 b) {
+    return per_lane(a, b, [](float x, float y) { return x / y; });
+}
+inline Float4 sqrt(Float4 a) {
+    return per_lane(a, a, [](float x, float) { return std::sqrt(x); });
+}
+inline Float4 abs(Float4 a) {
+    return per_lane(a, a, [](float x, float) { return std::fabs(x); });
+}
+
+struct Mask4 {
+    bool v[4];
+};
+inline Mask4 operator<(Float4 a, Float4 b) {
+    return {{a.v[0] < b.v[0], a.v[1] < b.v[1], a.v[2] < b.v[2], a.v[3] < b.v[3]}};
+}
+inline Mask4 operator&&(Mask4 a, Mask4 b) {
+    return {{a.v[0] && b.v[0], a.v[1] && b.v[1], a.v[2] && b.v[2], a.v[3] && b.v[3]}};
+}
+inline Float4 select(Mask4 which, Float4 yes, Float4 no) {
+    Float4 out;
+    for (int i = 0; i < 4; ++i) out.v[i] = which.v[i] ? yes.v[i] : no.v[i];
+    return out;
 }
 
 #endif
