@@ -102,7 +102,7 @@ struct RenderSettings {
     /// The error √mean(Var / (I + 0.01)²) over pixels and channels up to which the picture is sampled, each 8 × 8
     /// pixels as much as they need; 0: all pixels alike. samples_per_pixel is then the most that a pixel gets. Samples
     /// are spread over kReplicates independent sequences, so such a picture is another one than without a target. Not
-    /// together with Execution::time_limit, for what a pixel gets must not depend on the time, nor with AOVs.
+    /// together with Execution::time_limit, for what a pixel gets must not depend on the time.
     float target_error = 0;
 };
 

@@ -15,42 +15,55 @@ SampleLimits limits_of(uint64_t most_samples) {
 }
 
 /// Over all pixels of a cell.
-Channels mean_of(const std::vector<RgbSum>& sums, uint64_t samples) {
+Channels mean_of(const TileSums& sums, uint64_t samples) {
     RgbSum sum;
-    for (const RgbSum& s : sums) sum += s;
+    for (const RgbSum& s : sums.color) sum += s;
     // Every pixel has kGroupReplicates sums, each of samples / kGroupReplicates samples.
-    const double count = double(samples) * double(sums.size()) / kGroupReplicates;
+    const double count = double(samples) * double(sums.color.size()) / kGroupReplicates;
     return {sum.r / count, sum.g / count, sum.b / count};
 }
 
-GroupSums pixel_of(const std::vector<RgbSum>& sums, uint64_t samples, uint32_t pixel) {
-    return {std::span(sums).subspan(size_t(pixel) * kGroupReplicates, kGroupReplicates),
+GroupSums group_of(const TileSums& sums, uint64_t samples, uint32_t pixel) {
+    return {std::span(sums.color).subspan(size_t(pixel) * kGroupReplicates, kGroupReplicates),
             double(samples) / kGroupReplicates};
 }
 
 }  // namespace
 
-AdaptiveFilm::AdaptiveFilm(Crop window, double target, uint64_t most_samples)
-    : window_(window), target_(target), limits_(limits_of(most_samples)) {
+SumKinds AdaptiveFilm::kinds_of(AovSet aovs) noexcept {
+    SumKinds kinds(aovs);
+    kinds.squares = false;
+    return kinds;
+}
+
+TileSums AdaptiveFilm::empty_sums(const TileRect& tile) const {
+    TileSums out(tile.pixels(), kinds_);
+    out.color.resize(size_t(tile.pixels()) * kGroupReplicates);
+    return out;
+}
+
+AdaptiveFilm::AdaptiveFilm(Crop window, double target, uint64_t most_samples, AovSet aovs)
+    : window_(window), kinds_(kinds_of(aovs)), channels_(aovs), target_(target), limits_(limits_of(most_samples)) {
     columns_ = window.x1 > window.x0 ? (window.x1 - 1) / kCellSize - window.x0 / kCellSize + 1 : 0;
     for (uint32_t y = window.y0 / kCellSize * kCellSize; y < window.y1; y += kCellSize)
         for (uint32_t x = window.x0 / kCellSize * kCellSize; x < window.x1; x += kCellSize) {
             Cell cell;
             cell.tile = {std::max(x, window.x0), std::max(y, window.y0), std::min(x + kCellSize, window.x1),
                          std::min(y + kCellSize, window.y1)};
-            for (Group& group : cell.groups) group.sums.resize(size_t(cell.tile.pixels()) * kGroupReplicates);
+            for (Group& group : cell.groups) group.sums = empty_sums(cell.tile);
             cells_.push_back(std::move(cell));
         }
     for (std::vector<uint64_t>& wanted : wanted_) wanted.resize(cells_.size(), limits_.least);
 }
 
-std::vector<RgbSum> AdaptiveFilm::sums(size_t unit) const {
+TileSums AdaptiveFilm::sums(size_t unit) const {
+    const Cell& cell = cells_[pass_[unit].cell];
+    if (pass_[unit].again) return empty_sums(cell.tile);
     const std::lock_guard lock(mutex_);
-    const std::vector<RgbSum>& sums = cells_[pass_[unit].cell].groups[pass_[unit].group].sums;
-    return pass_[unit].again ? std::vector<RgbSum>(sums.size()) : sums;
+    return cell.groups[pass_[unit].group].sums;
 }
 
-void AdaptiveFilm::commit(size_t unit, std::vector<RgbSum> sums) {
+void AdaptiveFilm::commit(size_t unit, TileSums sums) {
     const std::lock_guard lock(mutex_);
     const WorkUnit& work = pass_[unit].work;
     Group& group = cells_[pass_[unit].cell].groups[pass_[unit].group];
@@ -79,7 +92,7 @@ CellError AdaptiveFilm::cell_error(const Cell& cell, size_t which) const {
     out.samples = group.samples;
     const Channels around = mean_of(group.sums, group.samples);
     for (uint32_t i = 0; i < cell.tile.pixels(); ++i)
-        out.error += group_error(pixel_of(group.sums, group.samples, i), around);
+        out.error += group_error(group_of(group.sums, group.samples, i), around);
     return out;
 }
 
@@ -110,7 +123,7 @@ void AdaptiveFilm::measure() {
         Channels around;
         for (size_t c = 0; c < around.size(); ++c) around[c] = (around_a[c] + around_b[c]) / 2;
         for (uint32_t i = 0; i < cell.tile.pixels(); ++i)
-            error_ += pixel_error(pixel_of(a.sums, a.samples, i), pixel_of(b.sums, b.samples, i), around);
+            error_ += pixel_error(group_of(a.sums, a.samples, i), group_of(b.sums, b.samples, i), around);
     }
 }
 
@@ -149,32 +162,41 @@ ErrorReport AdaptiveFilm::report() const {
     return judge(error_, target_, limited);
 }
 
+/// Both groups have the same say, whatever their numbers of samples: those of the smaller one count several times, a
+/// whole number, since both numbers are powers of two times the least. A group without samples, of a picture that was
+/// stopped, has no say.
+PixelSums AdaptiveFilm::pixel_of(const Cell& cell, uint32_t pixel) const {
+    const Group &a = cell.groups[0], &b = cell.groups[1];
+    const uint64_t most = std::max(a.samples, b.samples);
+    const auto times = [&](const Group& g) { return static_cast<uint32_t>(g.samples > 0 ? most / g.samples : 0); };
+    PixelSums out = features_of({{&a.sums, times(a)}, {&b.sums, times(b)}}, pixel);
+    out.samples = cell.samples();
+    out.weight = double(most) * ((a.samples > 0) + (b.samples > 0));
+    for (const Group& group : cell.groups) {
+        if (group.samples == 0) continue;
+        const GroupSums sums = group_of(group.sums, group.samples, pixel);
+        for (RgbSum sum : sums.replicates) out.color += sum *= times(group);
+        // Replicates are independent, whatever the samples of each are among each other.
+        const Channels v = group_variance(sums);
+        RgbSum variance{v[0], v[1], v[2]};
+        const double share = double(most) / out.weight;
+        out.variance += variance *= share * share;
+    }
+    return out;
+}
+
 Image AdaptiveFilm::develop() const {
     const std::lock_guard lock(mutex_);
     Image image;
     image.width = window_.x1 - window_.x0;
     image.height = window_.y1 - window_.y0;
-    image.channels = {"R", "G", "B"};
-    image.pixels.resize(size_t(image.width) * image.height * 3);
+    channels_.describe(image);
+    image.pixels.resize(size_t(image.width) * image.height * channels_.count());
     for (const Cell& cell : cells_) {
         const TileRect& t = cell.tile;
-        // A group without samples, of a picture that was stopped, has no say.
-        const double groups = (cell.groups[0].samples > 0) + (cell.groups[1].samples > 0);
         for (uint32_t i = 0; i < t.pixels(); ++i) {
-            RgbSum mean;
-            for (const Group& group : cell.groups) {
-                if (group.samples == 0) continue;
-                const double share = 1 / (groups * double(group.samples));
-                for (size_t r = 0; r < kGroupReplicates; ++r) {
-                    const RgbSum& sum = group.sums[size_t(i) * kGroupReplicates + r];
-                    mean += RgbSum{sum.r * share, sum.g * share, sum.b * share};
-                }
-            }
             const size_t x = t.x0 - window_.x0 + i % t.width(), y = t.y0 - window_.y0 + i / t.width();
-            float* pixel = &image.pixels[3 * (y * image.width + x)];
-            pixel[0] = static_cast<float>(mean.r);
-            pixel[1] = static_cast<float>(mean.g);
-            pixel[2] = static_cast<float>(mean.b);
+            channels_.develop(pixel_of(cell, i), &image.pixels[(y * image.width + x) * channels_.count()]);
         }
     }
     return image;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "render/allocation.h"
+#include "render/aov.h"
 #include "render/error_estimate.h"
 #include "render/film.h"
 #include "render/integrator.h"
@@ -23,9 +24,11 @@ namespace steradian {
 class AdaptiveFilm {
 public:
     /// `most_samples` of a pixel: at least kReplicates × 2.
-    AdaptiveFilm(Crop window, double target, uint64_t most_samples);
+    AdaptiveFilm(Crop window, double target, uint64_t most_samples, AovSet aovs = {});
 
-    static size_t bytes_per_pixel() noexcept { return kReplicates * sizeof(RgbSum) + 8; }
+    static uint64_t bytes_per_pixel(AovSet aovs) noexcept {
+        return kReplicates * sizeof(RgbSum) + 8 + 2 * (kinds_of(aovs).bytes_per_pixel() - sizeof(RgbSum));
+    }
     static constexpr uint32_t kCellSize = 8;
 
     /// Ends a pass and decides the next one; false when there is none. No unit may be under way.
@@ -35,13 +38,14 @@ public:
     const WorkUnit& work(size_t unit) const noexcept { return pass_[unit].work; }
     /// Whether the unit's samples have been rendered before: its group was sampled further than it counts.
     bool again(size_t unit) const noexcept { return pass_[unit].again; }
-    /// The sums to which the unit is added, one for each pixel and replicate; what they have become goes to commit().
-    std::vector<RgbSum> sums(size_t unit) const;
-    void commit(size_t unit, std::vector<RgbSum> sums);
+    /// The sums to which the unit is added, of colour one for each pixel and replicate; what they have become goes to
+    /// commit().
+    TileSums sums(size_t unit) const;
+    void commit(size_t unit, TileSums sums);
 
     /// What is still to be rendered, over all pixels, as far as this pass's plan can tell.
     uint64_t samples_to_come() const noexcept { return to_come_; }
-    /// R, G, B means. Safe while others commit.
+    /// R, G, B means and the AOVs. Safe while others commit.
     Image develop() const;
     struct Samples {
         uint64_t min = 0, max = 0;  ///< of a pixel
@@ -54,8 +58,8 @@ public:
 private:
     /// Half of the replicates.
     struct Group {
-        uint64_t samples = 0;      ///< of each pixel
-        std::vector<RgbSum> sums;  ///< kGroupReplicates for each pixel
+        uint64_t samples = 0;  ///< of each pixel
+        TileSums sums;         ///< of colour kGroupReplicates for each pixel
     };
     struct Cell {
         TileRect tile;
@@ -68,6 +72,10 @@ private:
         WorkUnit work;
     };
 
+    /// What the variance of a pixel is comes from its replicates.
+    static SumKinds kinds_of(AovSet aovs) noexcept;
+    TileSums empty_sums(const TileRect& tile) const;
+    PixelSums pixel_of(const Cell& cell, uint32_t pixel) const;
     CellError cell_error(const Cell& cell, size_t group) const;
     void find_out(size_t group);
     void sample_to(size_t cell, size_t group, uint64_t samples);
@@ -76,6 +84,8 @@ private:
     void plan_what_is_to_come();
 
     const Crop window_;
+    const SumKinds kinds_;
+    const PictureChannels channels_;
     const double target_;
     const SampleLimits limits_;  ///< of a pixel in one group
     std::vector<Cell> cells_;    ///< row by row

@@ -21,17 +21,11 @@ float feature(double sum, const Sums& s) {
     return s.features.weight != 0 ? static_cast<float>(sum / s.features.weight) : 0;
 }
 
-/// Of the mean of `n` independent samples: their variance, Σ(X - mean)² / (n - 1), over n. 0 for a single one.
-float variance(double sum, double squares, double n) {
-    if (n < 2) return 0;
-    return static_cast<float>(max_of(squares - sum / n * sum, 0.0) / (n - 1) / n);
-}
-
 struct Row {
     Aov aov;
     const char* name;
     ChannelType type;
-    float (*value)(const Sums&, double samples);
+    float (*value)(const Sums&);
 };
 
 constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::single, kWhole = ChannelType::uint32;
@@ -39,7 +33,7 @@ constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::sin
 /// The channels of one light part.
 void add_part(size_t part, const std::string& layer, auto& channels) {
     const auto of = [part](double RgbSum::*channel) {
-        return [part, channel](const Sums& s, double n) { return mean(s.light.parts[part].*channel, n); };
+        return [part, channel](const Sums& s) { return mean(s.light.parts[part].*channel, s.weight); };
     };
     channels.push_back({layer + ".R", ChannelType::by_options, of(&RgbSum::r)});
     channels.push_back({layer + ".G", ChannelType::by_options, of(&RgbSum::g)});
@@ -51,43 +45,42 @@ void add_mattes(MatteCounts::Ranking Sums::*ranking, const std::string& name, au
     for (uint32_t rank = 0; rank < kMatteRanks; ++rank) {
         const std::string layer = fmt::format("{}{:02}", name, rank / 2);
         channels.push_back({layer + (rank % 2 == 0 ? ".R" : ".B"), ChannelType::single,
-                            [=](const Sums& s, double) { return std::bit_cast<float>((s.*ranking)[rank].id); }});
+                            [=](const Sums& s) { return std::bit_cast<float>((s.*ranking)[rank].id); }});
         channels.push_back({layer + (rank % 2 == 0 ? ".G" : ".A"), ChannelType::single,
-                            [=](const Sums& s, double) { return (s.*ranking)[rank].coverage; }});
+                            [=](const Sums& s) { return (s.*ranking)[rank].coverage; }});
     }
 }
 
 /// docs/aovs.md has them with their reasons.
 constexpr Row kRows[] = {
-    {Aov::alpha, "A", kAny, [](const Sums& s, double) { return clamp_to(feature(s.features.alpha, s), 0.0f, 1.0f); }},
-    {Aov::albedo, "albedo.R", kAny, [](const Sums& s, double) { return feature(s.features.albedo.r, s); }},
-    {Aov::albedo, "albedo.G", kAny, [](const Sums& s, double) { return feature(s.features.albedo.g, s); }},
-    {Aov::albedo, "albedo.B", kAny, [](const Sums& s, double) { return feature(s.features.albedo.b, s); }},
-    {Aov::normal, "N.X", kAny, [](const Sums& s, double) { return feature(s.features.normal.r, s); }},
-    {Aov::normal, "N.Y", kAny, [](const Sums& s, double) { return feature(s.features.normal.g, s); }},
-    {Aov::normal, "N.Z", kAny, [](const Sums& s, double) { return feature(s.features.normal.b, s); }},
-    {Aov::depth, "Z", kSingle, [](const Sums& s, double) { return s.centre.depth; }},
-    {Aov::position, "P.X", kSingle, [](const Sums& s, double) { return s.centre.position.x; }},
-    {Aov::position, "P.Y", kSingle, [](const Sums& s, double) { return s.centre.position.y; }},
-    {Aov::position, "P.Z", kSingle, [](const Sums& s, double) { return s.centre.position.z; }},
-    {Aov::uv, "uv.U", kSingle, [](const Sums& s, double) { return s.centre.uv.x; }},
-    {Aov::uv, "uv.V", kSingle, [](const Sums& s, double) { return s.centre.uv.y; }},
-    {Aov::object, "object.id", kWhole, [](const Sums& s, double) { return static_cast<float>(s.centre.object); }},
-    {Aov::material, "material.id", kWhole, [](const Sums& s, double) { return static_cast<float>(s.centre.material); }},
-    {Aov::primitive, "primitive.id", kWhole,
-     [](const Sums& s, double) { return static_cast<float>(s.centre.primitive); }},
-    {Aov::variance, "variance.R", kSingle, [](const Sums& s, double n) { return variance(s.color.r, s.squares.r, n); }},
-    {Aov::variance, "variance.G", kSingle, [](const Sums& s, double n) { return variance(s.color.g, s.squares.g, n); }},
-    {Aov::variance, "variance.B", kSingle, [](const Sums& s, double n) { return variance(s.color.b, s.squares.b, n); }},
-    {Aov::samples, "samples.count", kWhole, [](const Sums&, double n) { return static_cast<float>(n); }},
+    {Aov::alpha, "A", kAny, [](const Sums& s) { return clamp_to(feature(s.features.alpha, s), 0.0f, 1.0f); }},
+    {Aov::albedo, "albedo.R", kAny, [](const Sums& s) { return feature(s.features.albedo.r, s); }},
+    {Aov::albedo, "albedo.G", kAny, [](const Sums& s) { return feature(s.features.albedo.g, s); }},
+    {Aov::albedo, "albedo.B", kAny, [](const Sums& s) { return feature(s.features.albedo.b, s); }},
+    {Aov::normal, "N.X", kAny, [](const Sums& s) { return feature(s.features.normal.r, s); }},
+    {Aov::normal, "N.Y", kAny, [](const Sums& s) { return feature(s.features.normal.g, s); }},
+    {Aov::normal, "N.Z", kAny, [](const Sums& s) { return feature(s.features.normal.b, s); }},
+    {Aov::depth, "Z", kSingle, [](const Sums& s) { return s.centre.depth; }},
+    {Aov::position, "P.X", kSingle, [](const Sums& s) { return s.centre.position.x; }},
+    {Aov::position, "P.Y", kSingle, [](const Sums& s) { return s.centre.position.y; }},
+    {Aov::position, "P.Z", kSingle, [](const Sums& s) { return s.centre.position.z; }},
+    {Aov::uv, "uv.U", kSingle, [](const Sums& s) { return s.centre.uv.x; }},
+    {Aov::uv, "uv.V", kSingle, [](const Sums& s) { return s.centre.uv.y; }},
+    {Aov::object, "object.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.object); }},
+    {Aov::material, "material.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.material); }},
+    {Aov::primitive, "primitive.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.primitive); }},
+    {Aov::variance, "variance.R", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.r); }},
+    {Aov::variance, "variance.G", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.g); }},
+    {Aov::variance, "variance.B", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.b); }},
+    {Aov::samples, "samples.count", kWhole, [](const Sums& s) { return static_cast<float>(s.samples); }},
 };
 
 }  // namespace
 
 PictureChannels::PictureChannels(AovSet aovs) {
-    channels_.push_back({"R", kAny, [](const Sums& s, double n) { return mean(s.color.r, n); }});
-    channels_.push_back({"G", kAny, [](const Sums& s, double n) { return mean(s.color.g, n); }});
-    channels_.push_back({"B", kAny, [](const Sums& s, double n) { return mean(s.color.b, n); }});
+    channels_.push_back({"R", kAny, [](const Sums& s) { return mean(s.color.r, s.weight); }});
+    channels_.push_back({"G", kAny, [](const Sums& s) { return mean(s.color.g, s.weight); }});
+    channels_.push_back({"B", kAny, [](const Sums& s) { return mean(s.color.b, s.weight); }});
     for (const Row& row : kRows)
         if (aovs.has(row.aov)) channels_.push_back({row.name, row.type, row.value});
     for (size_t i = 0; i < kLightParts; ++i)
@@ -107,8 +100,8 @@ void PictureChannels::describe(Image& image) const {
     }
 }
 
-void PictureChannels::develop(const PixelSums& sums, uint64_t samples, float* out) const {
-    for (const Channel& c : channels_) *out++ = c.value(sums, static_cast<double>(samples));
+void PictureChannels::develop(const PixelSums& sums, float* out) const {
+    for (const Channel& c : channels_) *out++ = c.value(sums);
 }
 
 }  // namespace steradian

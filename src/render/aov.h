@@ -19,14 +19,14 @@ public:
     size_t count() const noexcept { return channels_.size(); }
     /// Names and types.
     void describe(Image& image) const;
-    /// The values of a pixel, count() of them, from its sums over `samples` samples.
-    void develop(const PixelSums& sums, uint64_t samples, float* out) const;
+    /// The values of a pixel, count() of them.
+    void develop(const PixelSums& sums, float* out) const;
 
 private:
     struct Channel {
         std::string name;
         ChannelType type = ChannelType::by_options;
-        std::function<float(const PixelSums& sums, double samples)> value;
+        std::function<float(const PixelSums&)> value;
     };
     std::vector<Channel> channels_;
 };

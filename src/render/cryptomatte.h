@@ -36,6 +36,11 @@ public:
         more.each([&](const Entry& e) { add(e.id, e.samples); });
         return *this;
     }
+    MatteCounts& operator*=(uint32_t times) {
+        for (Entry& e : few_) e.samples *= static_cast<int32_t>(times);
+        for (Entry& e : more_) e.samples *= static_cast<int32_t>(times);
+        return *this;
+    }
     struct Covered {
         uint32_t id = 0;
         float coverage = 0;  ///< 0 … 1

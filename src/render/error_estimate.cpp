@@ -84,6 +84,12 @@ double f_quantile(double n, double m, double doubt) {
 
 }  // namespace
 
+Channels group_variance(const GroupSums& group) noexcept {
+    Channels out;
+    for (size_t c = 0; c < out.size(); ++c) out[c] = variance_of_mean(means_of(group, int(c)));
+    return out;
+}
+
 ErrorSums pixel_error(const GroupSums& a, const GroupSums& b, const Channels& around) noexcept {
     double of_a = 0, of_b = 0;
     for (int channel = 0; channel < 3; ++channel) {

@@ -21,6 +21,9 @@ struct GroupSums {
     double samples_each = 1;
 };
 
+/// Of the group's mean, as its replicates tell it.
+Channels group_variance(const GroupSums& group) noexcept;
+
 /// Sums over pixels. v is Var / (I + 0.01)² of a pixel, mean of the channels, as its replicates tell it.
 struct ErrorSums {
     double pixels = 0;

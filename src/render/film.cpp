@@ -15,6 +15,26 @@ std::vector<TileRect> cut(Crop window, uint32_t size) {
     return out;
 }
 
+/// Of the mean of `n` samples, as if they were independent: Σ(X - mean)² / (n - 1), over n. 0 for a single one.
+double variance(double sum, double squares, double n) {
+    return n < 2 ? 0 : max_of(squares - sum / n * sum, 0.0) / (n - 1) / n;
+}
+
+/// `later`: of the block that is open, or nothing.
+PixelSums pixel_of(const TileSums& sums, const TileSums* later, size_t i, uint64_t samples) {
+    PixelSums out = later ? features_of({{&sums}, {later}}, i) : features_of({{&sums}}, i);
+    out.samples = samples, out.weight = static_cast<double>(samples);
+    out.color = sums.color[i];
+    if (later) out.color += later->color[i];
+    if (!sums.squares.empty()) {
+        SquareSum squares = sums.squares[i];
+        if (later) squares += later->squares[i];
+        out.variance = {variance(out.color.r, squares.r, out.weight), variance(out.color.g, squares.g, out.weight),
+                        variance(out.color.b, squares.b, out.weight)};
+    }
+    return out;
+}
+
 }  // namespace
 
 Film::Film(Crop window, uint32_t tile_size, AovSet aovs) : window_(window), kinds_(aovs), channels_(aovs) {
@@ -68,7 +88,7 @@ Image Film::develop() const {
         for (uint32_t i = 0; i < tile.rect.pixels(); ++i) {
             const size_t x = tile.rect.x0 - window_.x0 + i % tile.rect.width();
             const size_t y = tile.rect.y0 - window_.y0 + i / tile.rect.width();
-            channels_.develop(tile.samples > 0 ? tile.sums.pixel(i, open) : PixelSums{}, tile.samples,
+            channels_.develop(tile.samples > 0 ? pixel_of(tile.sums, open, i, tile.samples) : PixelSums{},
                               &image.pixels[(y * image.width + x) * channels_.count()]);
         }
     }

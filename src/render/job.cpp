@@ -44,9 +44,6 @@ Status check(const RenderSettings& s, const Execution& e) {
         return settings_error(
             "a time limit and a target for the error: one of them, so that time does not decide how "
             "many samples a pixel has");
-    if (!s.aovs.empty() && s.target_error > 0)
-        return settings_error(
-            "AOVs and a target for the error: one of them, for the film of a target has colours only");
     return check_picture_memory(s, e);
 }
 
@@ -70,7 +67,7 @@ public:
                    MatteIds(scene_->shading.scene, settings.aovs)},
           blocks_((settings.samples_per_pixel + kBlockSamples - 1) / kBlockSamples) {
         if (settings.target_error > 0)
-            adaptive_.emplace(window_, double(settings.target_error), settings.samples_per_pixel);
+            adaptive_.emplace(window_, double(settings.target_error), settings.samples_per_pixel, settings.aovs);
     }
 
     ~Job() override {
@@ -277,13 +274,12 @@ private:
 
     bool render_adaptive(Integrator& integrator, uint64_t unit, Counters& counters) {
         const WorkUnit& work = adaptive_->work(unit);
-        TileSums sums;
-        sums.color = adaptive_->sums(unit);
+        TileSums sums = adaptive_->sums(unit);
         // What is rendered a second time has had its report.
         Counters again;
         if (!integrator.render(work, sums, adaptive_->again(unit) ? again : counters)) return false;
         counters.add_rays(again);
-        adaptive_->commit(unit, std::move(sums.color));
+        adaptive_->commit(unit, std::move(sums));
         samples_done_ += uint64_t(work.samples) * work.tile.pixels();
         return true;
     }

@@ -126,7 +126,8 @@ uint64_t picture_bytes(const RenderSettings& s, const Execution& e) {
     const uint64_t width = window.x1 - window.x0, height = window.y1 - window.y0;
     // The sums go before a file's encoder takes its share, which is less. With a time limit a block is open beside
     // them.
-    const uint64_t of_pixel = s.target_error > 0 ? AdaptiveFilm::bytes_per_pixel() : SumKinds(s.aovs).bytes_per_pixel();
+    const uint64_t of_pixel =
+        s.target_error > 0 ? AdaptiveFilm::bytes_per_pixel(s.aovs) : SumKinds(s.aovs).bytes_per_pixel();
     const uint64_t sums = of_pixel * (e.time_limit > 0 ? 2 : 1);
     return width * height * (sums + PictureChannels(s.aovs).count() * sizeof(float)) +
            Film::tile_bytes() * (width / e.tile_size + 2) * (height / e.tile_size + 2) +

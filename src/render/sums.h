@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct RgbSum {
     }
     RgbSum& operator+=(const RgbSum& other) {
         r += other.r, g += other.g, b += other.b;
+        return *this;
+    }
+    RgbSum& operator*=(double times) {
+        r *= times, g *= times, b *= times;
         return *this;
     }
 };
@@ -44,6 +49,11 @@ struct FeatureSum {
         albedo += other.albedo, normal += other.normal;
         return *this;
     }
+    FeatureSum& operator*=(double times) {
+        weight *= times, alpha *= times;
+        albedo *= times, normal *= times;
+        return *this;
+    }
 };
 
 /// What makes no sense as an average is taken from one sample: the one nearest to the pixel's centre, of equally near
@@ -62,6 +72,7 @@ struct CentreSample {
         if (later.distance2 < distance2) *this = later;
         return *this;
     }
+    CentreSample& operator*=(double) { return *this; }
 };
 
 /// Radiance is divided by the first surface of its path, into the AOVs from `emission` to `transmission_indirect`.
@@ -73,6 +84,10 @@ struct LightSum {
     std::array<RgbSum, kLightParts> parts;
     LightSum& operator+=(const LightSum& other) {
         for (size_t i = 0; i < kLightParts; ++i) parts[i] += other.parts[i];
+        return *this;
+    }
+    LightSum& operator*=(double times) {
+        for (RgbSum& part : parts) part *= times;
         return *this;
     }
 };
@@ -101,11 +116,12 @@ struct SumKinds {
     }
 };
 
-/// One pixel's share of TileSums.
+/// All that is known of one pixel.
 struct PixelSums {
-    RgbSum color;
+    uint64_t samples = 0;
+    double weight = 0;       ///< how many samples the sums stand for; more than there are where some count twice
+    RgbSum color, variance;  ///< the latter of the mean of the colour
     FeatureSum features;
-    SquareSum squares;
     CentreSample centre;
     LightSum light;
     MatteCounts::Ranking objects, materials;
@@ -140,24 +156,31 @@ struct TileSums {
         fold(light, later.light), fold(objects, later.objects), fold(materials, later.materials);
         return *this;
     }
-    /// As if `later` had been added.
-    PixelSums pixel(size_t i, const TileSums* later = nullptr) const {
-        PixelSums out;
-        const auto take = [&](auto& into, const auto& sums, const auto& more) {
-            if (sums.empty()) return;
-            into = sums[i];
-            if (!more.empty()) into += more[i];
-        };
-        static const TileSums nothing;
-        const TileSums& more = later ? *later : nothing;
-        take(out.color, color, more.color), take(out.features, features, more.features);
-        take(out.squares, squares, more.squares), take(out.centre, centres, more.centres);
-        take(out.light, light, more.light);
-        MatteCounts of_objects, of_materials;
-        take(of_objects, objects, more.objects), take(of_materials, materials, more.materials);
-        out.objects = of_objects.ranking(), out.materials = of_materials.ranking();
-        return out;
-    }
 };
+
+/// A share of a pixel's sums; each of its samples counts so many times.
+struct SumPart {
+    const TileSums* sums = nullptr;
+    uint32_t times = 1;
+};
+
+/// Pixel `i` of the parts together, in their order; without what is known of the colour.
+inline PixelSums features_of(std::initializer_list<SumPart> parts, size_t i) {
+    PixelSums out;
+    MatteCounts objects, materials;
+    for (const SumPart& part : parts) {
+        const auto take = [&](auto& into, const auto& sums) {
+            if (sums.empty()) return;
+            auto sum = sums[i];
+            sum *= part.times;
+            into += sum;
+        };
+        take(out.features, part.sums->features), take(out.centre, part.sums->centres);
+        take(out.light, part.sums->light);
+        take(objects, part.sums->objects), take(materials, part.sums->materials);
+    }
+    out.objects = objects.ranking(), out.materials = materials.ranking();
+    return out;
+}
 
 }  // namespace steradian

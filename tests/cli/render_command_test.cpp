@@ -120,7 +120,11 @@ TEST_F(RenderCommand, ATargetForTheErrorIsReachedOrSaidToBeMissed) {
     EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "-1"}).code, 2);
     EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "1e-9"}).code, 2);
     EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "0.2", "--spp", "15"}).code, 2);
-    EXPECT_EQ(steradian({"render", "scene.json", "--target-error", "0.2", "--aovs", "depth"}).code, 2);
+
+    const Outcome with_aovs = steradian({"render", "scene.json", "--target-error", "0.2", "--size", "40x40", "--aovs",
+                                         "depth,samples", "-q", "-o", "c.exr"});
+    EXPECT_EQ(with_aovs.code, 0) << with_aovs.err;
+    EXPECT_NE(steradian({"info", "c.exr"}).out.find("samples.count"), std::string::npos);
 }
 
 TEST_F(RenderCommand, ATimeLimitIsATime) {

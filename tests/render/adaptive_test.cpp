@@ -38,9 +38,9 @@ public:
     void pass(AdaptiveFilm& film) {
         for (size_t unit = 0; unit < film.units(); ++unit) {
             const WorkUnit& work = film.work(unit);
-            std::vector<RgbSum> sums = film.sums(unit);
+            TileSums sums = film.sums(unit);
             for (uint32_t i = 0; i < work.tile.pixels(); ++i)
-                for (uint32_t r = 0; r < work.replicates; ++r) add(work, i, r, sums[i * work.replicates + r]);
+                for (uint32_t r = 0; r < work.replicates; ++r) add(work, i, r, sums.color[i * work.replicates + r]);
             drawn_ += uint64_t(work.samples) * work.tile.pixels();
             again_ += film.again(unit);
             counts_[{work.tile.x0, work.tile.y0, work.first_replicate}] = work.first_sample + work.samples;
@@ -221,13 +221,13 @@ TEST(AdaptiveFilm, CoversAnyWindowOnceAndWeighsGroupsAlike) {
             const WorkUnit& w = film.work(unit);
             EXPECT_EQ(w.tile.x0 / 8, (w.tile.x1 - 1) / 8);
             EXPECT_EQ(w.tile.y0 / 8, (w.tile.y1 - 1) / 8);
-            std::vector<RgbSum> sums = film.sums(unit);
+            TileSums sums = film.sums(unit);
             // The value of a pixel says where it is; blue, which group brought it.
             for (uint32_t i = 0; i < w.tile.pixels(); ++i)
                 for (uint32_t r = 0; r < w.replicates; ++r) {
                     const double x = w.tile.x0 + i % w.tile.width(), y = w.tile.y0 + i / w.tile.width();
                     const double each = w.samples / double(w.replicates);
-                    sums[i * w.replicates + r] += RgbSum{each * x, each * y, w.first_replicate ? 3 * each : each};
+                    sums.color[i * w.replicates + r] += RgbSum{each * x, each * y, w.first_replicate ? 3 * each : each};
                 }
             film.commit(unit, std::move(sums));
         }

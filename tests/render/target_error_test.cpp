@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/names.h"
+#include "render/sums.h"
 #include "render_support.h"
 #include "steradian/replay.h"
 #include "support/support.h"
@@ -143,12 +145,85 @@ TEST(TargetError, IsNotForTimeToDecide) {
     EXPECT_EQ(job.error().code, ErrorCode::usage);
 }
 
-TEST(TargetError, IsNotTogetherWithAovs) {
-    RenderSettings settings = up_to(0.1f);
-    settings.aovs = AovSet::all();
-    const auto job = RenderJob::start(prepared(shadows()), settings, {});
-    ASSERT_FALSE(job.ok());
-    EXPECT_EQ(job.error().code, ErrorCode::usage);
+/// The most that rounding a mean to single precision, and eight of them, can make.
+void expect_parts_to_sum_up(const Image& image) {
+    using test::channel;
+    for (const char* c : {"R", "G", "B"}) {
+        const std::vector<float> whole = channel(image, c);
+        std::vector<double> sum(whole.size());
+        for (size_t aov = size_t(kFirstLightPart); aov <= size_t(kLastLightPart); ++aov) {
+            const std::vector<float> part = channel(image, std::string(name_of(static_cast<Aov>(aov))) + "." + c);
+            for (size_t i = 0; i < part.size(); ++i) sum[i] += double(part[i]);
+        }
+        for (size_t i = 0; i < whole.size(); ++i)
+            ASSERT_NEAR(sum[i], double(whole[i]), 1e-6 * double(whole[i]) + 1e-12) << c << i;
+    }
+}
+
+TEST(TargetError, LeavesTheColourAloneWithAovs) {
+    const auto scene = prepared(test::everything_scene());
+    RenderSettings plain = up_to(0.2f, 4096), all = plain;
+    all.aovs = AovSet::all();
+    const RenderResult without = run(scene, plain), with = run(scene, all, {1, 16});
+    EXPECT_EQ(image_hash(color_channels(with.image)), image_hash(without.image));
+    EXPECT_LT(with.min_samples, with.max_samples);
+    for (const uint32_t tile : {5u, 64u})
+        EXPECT_EQ(image_hash(run(scene, all, {2, tile}).image), image_hash(with.image));
+    expect_parts_to_sum_up(with.image);
+
+    double samples = 0;
+    for (const float n : test::channel(with.image, "samples.count")) samples += double(n);
+    EXPECT_DOUBLE_EQ(samples / (32 * 32), with.mean_samples);
+    // What has no noise is that of the picture without a target, where the edges of things are not.
+    RenderSettings fixed = all;
+    fixed.target_error = 0;
+    fixed.samples_per_pixel = 1024;
+    const Image other = run(scene, fixed).image;
+    for (const char* c : {"object.id", "A", "CryptoObject00.G"}) {
+        const std::vector<float> a = test::channel(with.image, c), b = test::channel(other, c);
+        int differ = 0;
+        for (size_t i = 0; i < a.size(); ++i) differ += std::fabs(a[i] - b[i]) > 0.25f;
+        EXPECT_LT(differ, 5) << c;
+    }
+}
+
+/// The variance that the file claims, against pictures with other seeds: spheres on a floor under an even sky, where
+/// noise is nearly normal, with samplers that are and are not better than independent samples.
+TEST(TargetError, TellsTheVarianceOfItsPixels) {
+    Scene s;
+    const MaterialId white = test::diffuse(s, {0.7f, 0.7f, 0.7f}, true);
+    test::place(s, Rectangle{{0, 0, 0}, {30, 0, 0}, {0, 0, -30}}, white);
+    for (const float x : {-1.0f, 0.0f, 1.0f}) test::place(s, Sphere{{x, 0.5f, 0}, 0.5f}, white);
+    s.lights = {EnvironmentLight{{1, 1, 1}}};
+    s.cameras = {PerspectiveCamera{{0, 4, 6}, {0, 0.5f, 0}, {0, 1, 0}, 30}};
+    const auto scene = prepared(std::move(s));
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
+        RenderSettings settings = up_to(0.06f);
+        settings.sampler = sampler;
+        settings.integrator = IntegratorKind::direct;
+        settings.aovs = {Aov::variance};
+        constexpr int kPictures = 24;
+        std::vector<double> sum(32 * 32), squares(32 * 32);
+        double claimed = 0;
+        for (int seed = 0; seed < kPictures; ++seed) {
+            settings.seed = 90 + uint64_t(seed);
+            const Image image = run(scene, settings).image;
+            const std::vector<float> g = test::channel(image, "G"), v = test::channel(image, "variance.G");
+            for (size_t i = 0; i < g.size(); ++i) {
+                sum[i] += double(g[i]), squares[i] += double(g[i]) * double(g[i]);
+                claimed += double(v[i]) / kPictures;
+            }
+        }
+        double found = 0, spread = 0;
+        for (size_t i = 0; i < sum.size(); ++i) {
+            const double v = std::max(squares[i] - sum[i] * sum[i] / kPictures, 0.0) / (kPictures - 1);
+            found += v;
+            // Of a variance with so many degrees of freedom, and of as many means of one with six.
+            spread += v * v * (2.0 / (kPictures - 1) + 2.0 / 6 / kPictures);
+        }
+        EXPECT_NEAR(claimed, found, 5 * std::sqrt(spread));
+        EXPECT_LT(5 * std::sqrt(spread), 0.15 * found);
+    }
 }
 
 TEST(TargetError, IsPartialWhenStopped) {
