@@ -47,6 +47,28 @@ TEST(GltfContainer, LiesInTheHeaderAreRefusedAtTheirByte) {
     EXPECT_EQ(at(16, 0x004e4942), "test.gltf: byte 12");   // a binary chunk first
 }
 
+TEST(GltfContainer, OtherFilesThatAreCalledBinary) {
+    const auto load = [](const std::string& bytes, const std::string& name) -> Result<LoadedScene> {
+        try {
+            return gltf::load(bytes, name, "/nonexistent", {});
+        } catch (json::ReadFailure& failure) {
+            return std::move(failure.error);
+        }
+    };
+    std::string damaged = triangle_file(true);
+    damaged[0] = 'G';
+    for (const std::string& bytes : {damaged, std::string(), std::string("\x1f\x8b\x08 zipped"), std::string("  [1]")})
+        for (const char* name : {"a.glb", "a.GLB"}) {
+            const auto loaded = load(bytes, name);
+            ASSERT_FALSE(loaded.ok());
+            EXPECT_EQ(loaded.error().where.byte, 0u);
+            EXPECT_NE(loaded.error().message.find("no binary glTF"), std::string::npos) << loaded.error().str();
+        }
+    // Text by that name is read, and a text file that is none has a place in its text.
+    EXPECT_TRUE(load("\xef\xbb\xbf \n" + triangle_file(false), "a.glb").ok());
+    EXPECT_EQ(load(damaged, "a.gltf").error().where.line, 1u);
+}
+
 TEST(GltfContainer, BytesBehindTheEndAreAWarning) {
     const LoadedScene loaded = good_gltf(triangle_file(true) + "more");
     EXPECT_TRUE(has(loaded.diagnostics, "behind the end"));

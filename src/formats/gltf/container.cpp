@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "base/text.h"
+
 namespace steradian::gltf {
 namespace {
 
@@ -86,10 +88,24 @@ private:
     Diagnostics& diagnostics_;
 };
 
+/// A binary file that is damaged, or another one by that name, is no JSON with a fault at its first character.
+bool must_be_binary(std::string_view bytes, const std::string& name) {
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    const size_t first = bytes.find_first_not_of(" \t\r\n");
+    const bool json = first != bytes.npos && bytes[first] == '{';
+    return !json && extension_of(name) == ".glb";
+}
+
 }  // namespace
 
 Result<Container> open_container(std::string_view bytes, const std::string& name, Diagnostics& diagnostics) {
     if (bytes.starts_with(kMagic)) return BinaryReader(bytes, name, diagnostics).read();
+    if (must_be_binary(bytes, name))
+        return Error{ErrorCode::bad_input,
+                     "the file is no binary glTF, which begins with 'glTF', nor JSON, which begins with '{'",
+                     {name, 0, 0, 0},
+                     {},
+                     bytes.empty() ? "it is empty" : "it may be damaged, or compressed as a whole"};
     return Container{bytes, std::nullopt, std::nullopt};
 }
 
