@@ -172,7 +172,7 @@ struct OpenPbrMaterial {
     FloatInput base_metalness{0};
     float base_diffuse_roughness = 0;
     float specular_weight = 1;    ///< at most 10: scales the reflectance at normal incidence
-    Rgb specular_color{1, 1, 1};  ///< of metals: at 82 degrees; at most 1
+    ColorInput specular_color{};  ///< of metals: at 82 degrees; at most 1
     FloatInput specular_roughness{0.3f};
     float specular_ior = 1.5f;  ///< inside over outside, > 0
     float specular_roughness_anisotropy = 0;
@@ -183,10 +183,10 @@ struct OpenPbrMaterial {
     float subsurface_scatter_anisotropy = 0;  ///< in [-1, 1]; of thin walls: from what is reflected to what passes
     FloatInput fuzz_weight{0};
     ColorInput fuzz_color{};
-    float fuzz_roughness = 0.5f;
+    FloatInput fuzz_roughness{0.5f};
     float coat_weight = 0;
     ColorInput coat_color{};  ///< of what passes the coat twice at normal incidence; at most 1
-    float coat_roughness = 0;
+    FloatInput coat_roughness{0};
     float coat_roughness_anisotropy = 0;
     float coat_ior = 1.6f;  ///< at least 1
     float coat_darkening = 1;

@@ -156,16 +156,14 @@ private:
         unit(m.geometry_opacity, "geometry_opacity must be between 0 and 1");
         unit(m.geometry_opacity_cutoff, "geometry_opacity_cutoff must be between 0 and 1");
         const char* roughness = "roughnesses and anisotropies must be between 0 and 1";
-        unit(m.specular_roughness, roughness);
-        for (const float r : {m.base_diffuse_roughness, m.specular_roughness_anisotropy, m.fuzz_roughness,
-                              m.coat_roughness, m.coat_roughness_anisotropy})
+        for (const FloatInput* r : {&m.specular_roughness, &m.fuzz_roughness, &m.coat_roughness}) unit(*r, roughness);
+        for (const float r : {m.base_diffuse_roughness, m.specular_roughness_anisotropy, m.coat_roughness_anisotropy})
             unit(r, roughness);
         const char* colors = "colours must be finite and not negative";
-        for (const ColorInput* c : {&m.base_color, &m.transmission_color, &m.subsurface_color, &m.fuzz_color,
-                                    &m.coat_color, &m.emission_color})
+        for (const ColorInput* c : {&m.base_color, &m.specular_color, &m.transmission_color, &m.subsurface_color,
+                                    &m.fuzz_color, &m.coat_color, &m.emission_color})
             color(*c, colors);
-        color(m.specular_color, colors);
-        require(max_component(m.specular_color) <= 1, "the specular colour must be at most 1");
+        require(max_component(m.specular_color.value) <= 1, "the specular colour must be at most 1");
         require(m.specular_weight >= 0 && m.specular_weight <= 10, "specular_weight must be between 0 and 10");
         require(m.specular_ior >= 0.1f && m.specular_ior <= 10, "specular_ior must be between 0.1 and 10");
         require(m.coat_ior >= 1.01f && m.coat_ior <= 3, "coat_ior must be between 1.01 and 3");

@@ -71,7 +71,7 @@ struct OpenPbrBsdf {
     Rgb coat_color, darkening{1, 1, 1};
     Rgb fuzz_color;
     float metalness = 0, transmission = 0, subsurface = 0, diffuse_roughness = 0;
-    float coat_weight = 0, fuzz_weight = 0;
+    float coat_weight = 0, fuzz_weight = 0, fuzz_roughness = 0.5f;
     float passed_share = 0;  ///< of what the subsurface of a thin wall scatters
     bool thin_walled = false;
     Microfacets coat;

@@ -11,11 +11,12 @@ namespace {
 Rgb passed_by_layers(const OpenPbrMaterial& m, const LobeContext& context, double mu) {
     const OpenPbrTables& tables = *context.material.open_pbr;
     double left = 1;
-    if (tables.fuzz) left -= eval_input(context.scene, m.fuzz_weight, context.point) * tables.fuzz->albedo(mu);
+    const auto number = [&](const FloatInput& in) { return eval_input(context.scene, in, context.point); };
+    if (tables.fuzz) left -= number(m.fuzz_weight) * tables.fuzz->albedo(number(m.fuzz_roughness), mu);
     Rgb tint{1, 1, 1};
     if (tables.coat) {
         const double across = std::sqrt((1 - mu) * (1 + mu) / 2);
-        const Microfacets facets = open_pbr_facets(m.coat_roughness, m.coat_roughness_anisotropy, 1);
+        const Microfacets facets = open_pbr_coat(m, tables, number(m.coat_roughness));
         left *= 1 - m.coat_weight * (1 - tables.coat->loss(facets, {across, across, mu}));
         const double eta2 = tables.coat_eta * tables.coat_eta;
         const double way = 0.5 / std::sqrt(max_of(1 - (1 - mu) * (1 + mu) / eta2, 1e-4));

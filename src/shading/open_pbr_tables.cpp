@@ -38,43 +38,77 @@ double mean_fresnel(double eta) {
 
 }  // namespace
 
-FuzzTable::FuzzTable(float roughness) {
-    inverse_ = 1 / clamp_to(static_cast<double>(roughness), 0.07, 1.0);
+namespace {
+
+double fuzz_inverse(double roughness) { return 1 / clamp_to(roughness, 0.07, 1.0); }
+
+/// f cos θ_i
+double eval_fuzz(double inverse, double scale, Vec3d wo, Vec3d wi) {
+    const Vec3d h = normalize(wo + wi);
+    const double sine2 = max_of((1 - h.z) * (1 + h.z), 0.0);
+    const double d = sine2 > 0 ? (2 + inverse) * math::pow(sine2, inverse / 2) / (2 * std::numbers::pi) : 0;
+    return scale * d * wi.z / (4 * (wo.z + wi.z - wo.z * wi.z));
+}
+
+}  // namespace
+
+FuzzTable::Level FuzzTable::make_level(double roughness) {
+    const double inverse = fuzz_inverse(roughness);
+    Level out;
     constexpr int kSteps = 96;
     double most = 0;
-    for (size_t entry = 0; entry < albedo_.size(); ++entry) {
-        const double mu = max_of(from_entry(double(entry) / double(albedo_.size() - 1)), 1e-4);
+    for (size_t entry = 0; entry < out.albedo.size(); ++entry) {
+        const double mu = max_of(from_entry(double(entry) / double(out.albedo.size() - 1)), 1e-4);
         const Vec3d wo{std::sqrt((1 - mu) * (1 + mu)), 0, mu};
         double sum = 0;
         for (int i = 0; i < kSteps; ++i)
             for (int j = 0; j < kSteps; ++j) {
                 const double t = (i + 0.5) / kSteps, z = t * t, s = std::sqrt((1 - z) * (1 + z));
                 const double phi = std::numbers::pi * (j + 0.5) / kSteps;
-                sum += eval(wo, {s * math::cos(phi), s * math::sin(phi), z}).r * 2 * t * 2 * std::numbers::pi;
+                const Vec3d wi{s * math::cos(phi), s * math::sin(phi), z};
+                sum += static_cast<float>(eval_fuzz(inverse, 1, wo, wi)) * 2 * t * 2 * std::numbers::pi;
             }
-        albedo_[entry] = sum / (kSteps * kSteps);
-        most = max_of(most, albedo_[entry]);
+        out.albedo[entry] = sum / (kSteps * kSteps);
+        most = max_of(most, out.albedo[entry]);
     }
     // This masking is not derived from the distribution, so nothing else keeps it from making energy.
     if (most > 1) {
-        scale_ = 1 / most;
-        for (double& a : albedo_) a *= scale_;
+        out.scale = 1 / most;
+        for (double& a : out.albedo) a *= out.scale;
     }
+    return out;
 }
 
-Rgb FuzzTable::eval(Vec3d wo, Vec3d wi) const noexcept {
-    const Vec3d h = normalize(wo + wi);
-    const double sine2 = max_of((1 - h.z) * (1 + h.z), 0.0);
-    const double d = sine2 > 0 ? (2 + inverse_) * math::pow(sine2, inverse_ / 2) / (2 * std::numbers::pi) : 0;
-    const double f = scale_ * d * wi.z / (4 * (wo.z + wi.z - wo.z * wi.z));
-    return {static_cast<float>(f), static_cast<float>(f), static_cast<float>(f)};
+FuzzTable::FuzzTable(const FloatInput& roughness) {
+    constexpr size_t kLevels = 17;
+    if (!roughness.texture) levels_.push_back(make_level(roughness.value));
+    for (size_t i = 0; roughness.texture && i < kLevels; ++i)
+        levels_.push_back(make_level(double(i) / double(kLevels - 1)));
 }
 
-double FuzzTable::albedo(double mu) const noexcept {
-    const double t = to_entry(mu) * double(albedo_.size() - 1);
-    const size_t i = min_of(static_cast<size_t>(t), albedo_.size() - 2);
+FuzzTable::Position FuzzTable::position(float roughness) const noexcept {
+    if (levels_.size() == 1) return {0, 0};
+    const double t = clamp_to(static_cast<double>(roughness), 0.0, 1.0) * double(levels_.size() - 1);
+    const size_t first = min_of(static_cast<size_t>(t), levels_.size() - 2);
+    return {first, t - double(first)};
+}
+
+Rgb FuzzTable::eval(float roughness, Vec3d wo, Vec3d wi) const noexcept {
+    const Position at = position(roughness);
+    double scale = levels_[at.first].scale;
+    if (at.fraction > 0) scale = scale * (1 - at.fraction) + levels_[at.first + 1].scale * at.fraction;
+    const auto f = static_cast<float>(eval_fuzz(fuzz_inverse(roughness), scale, wo, wi));
+    return {f, f, f};
+}
+
+double FuzzTable::albedo(float roughness, double mu) const noexcept {
+    const Position at = position(roughness);
+    const double t = to_entry(mu) * double(levels_[0].albedo.size() - 1);
+    const size_t i = min_of(static_cast<size_t>(t), levels_[0].albedo.size() - 2);
     const double f = t - double(i);
-    return min_of(albedo_[i] * (1 - f) + albedo_[i + 1] * f, 1.0);
+    const auto of = [&](const Level& l) { return min_of(l.albedo[i] * (1 - f) + l.albedo[i + 1] * f, 1.0); };
+    const double first = of(levels_[at.first]);
+    return at.fraction > 0 ? first * (1 - at.fraction) + of(levels_[at.first + 1]) * at.fraction : first;
 }
 
 Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept {
@@ -83,10 +117,10 @@ Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept {
     return {static_cast<float>(along), static_cast<float>(across * along)};
 }
 
-float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noexcept {
+float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness, float coat_roughness) noexcept {
     if (m.coat_weight == 0) return specular_roughness;
     const auto fourth = [](double x) { return x * x * x * x; };
-    const double r = specular_roughness, sum = fourth(r) + 2 * fourth(m.coat_roughness);
+    const double r = specular_roughness, sum = fourth(r) + 2 * fourth(coat_roughness);
     const double rougher = std::sqrt(std::sqrt(min_of(sum, 1.0)));
     return static_cast<float>(r + (rougher - r) * m.coat_weight);
 }
@@ -105,8 +139,9 @@ std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Ro
     return known;
 }
 
-std::shared_ptr<const FuzzTable> SharedTables::fuzz(float roughness) {
-    auto& known = fuzz_[roughness];
+std::shared_ptr<const FuzzTable> SharedTables::fuzz(const FloatInput& roughness) {
+    const bool textured = roughness.texture.has_value();
+    auto& known = fuzz_[{textured ? 1 : roughness.value, textured}];
     if (!known) known = std::make_shared<const FuzzTable>(roughness);
     return known;
 }
@@ -148,7 +183,8 @@ SharedTables::Film film_of(const OpenPbrMaterial& m, const Roughness& base, doub
     out.below = below, out.eta = tables.eta, out.eta_outside = tables.eta_outside;
     out.metal = m.base_metalness.value > 0, out.glass = m.transmission_weight.value > 0;
     out.opaque = m.transmission_weight.value != 1 || m.transmission_weight.texture.has_value();
-    if (out.metal) out.tint[0] = m.specular_color.r, out.tint[1] = m.specular_color.g, out.tint[2] = m.specular_color.b;
+    if (out.metal)
+        for (int c = 0; c < 3; ++c) out.tint[c] = m.specular_color.value[c];
     out.base = base;
     return out;
 }
@@ -157,8 +193,10 @@ SharedTables::Film film_of(const OpenPbrMaterial& m, const Roughness& base, doub
 
 OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& shared) {
     OpenPbrTables out;
-    out.textured = m.specular_roughness.texture.has_value();
-    const float roughness = out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value);
+    out.coat_textured = m.coat_weight > 0 && m.coat_roughness.texture;
+    out.textured = m.specular_roughness.texture || out.coat_textured;
+    const float roughness =
+        out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value, m.coat_roughness.value);
     const Roughness base = table_roughness(open_pbr_alpha(roughness, m.specular_roughness_anisotropy), out.textured);
     out.coat_eta = m.coat_ior;
     // Under a coat the index is relative to the coat's. Seen from outside it reflects like its inverse: what would be
@@ -173,8 +211,8 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     if (m.transmission_weight.value > 0 && !m.geometry_thin_walled) out.glass = shared.transmitting(base, out.eta);
     if (m.thin_film_weight > 0) out.film = shared.film(film_of(m, base, weighted, out));
     if (m.coat_weight > 0) {
-        const Vec2 alpha = open_pbr_alpha(m.coat_roughness, m.coat_roughness_anisotropy);
-        out.coat = shared.coating(table_roughness(alpha, false), out.coat_eta);
+        const Vec2 alpha = open_pbr_alpha(out.coat_textured ? 1 : m.coat_roughness.value, m.coat_roughness_anisotropy);
+        out.coat = shared.coating(table_roughness(alpha, out.coat_textured), out.coat_eta);
         out.coat_normal_reflectance = fresnel_dielectric(1, out.coat_eta);
         out.coat_inner_reflectance = 1 - (1 - mean_fresnel(out.coat_eta)) / (out.coat_eta * out.coat_eta);
     }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <tuple>
+#include <vector>
 
 #include "math/vector.h"
 #include "shading/microfacet_energy.h"
@@ -15,18 +16,28 @@ namespace steradian {
 
 /// Fibres that stand up from a surface: the distribution of A. C. Estevez and C. Kulla, "Production Friendly Microfacet
 /// Sheen BRDF", 2017, equation 2, with the masking of D. Neubelt and M. Pettineo, "Crafting a Next-Gen Material
-/// Pipeline for The Order: 1886", 2013. The roughness is clamped to [0.07, 1].
+/// Pipeline for The Order: 1886", 2013. Roughnesses are clamped to [0.07, 1].
 class FuzzTable {
 public:
-    explicit FuzzTable(float roughness);
+    /// Of this roughness, or where it is a texture, of all.
+    explicit FuzzTable(const FloatInput& roughness);
     /// f cos θ_i, white; both above the surface.
-    Rgb eval(Vec3d wo, Vec3d wi) const noexcept;
-    /// What is reflected of the light from the cosine mu, at most 1.
-    double albedo(double mu) const noexcept;
+    Rgb eval(float roughness, Vec3d wo, Vec3d wi) const noexcept;
+    /// What is reflected of the light from the cosine mu, at most 1. Between the roughnesses of the table within 1e-2.
+    double albedo(float roughness, double mu) const noexcept;
 
 private:
-    double inverse_ = 1, scale_ = 1;
-    std::array<double, 64> albedo_{};
+    struct Level {
+        double scale = 1;
+        std::array<double, 64> albedo{};
+    };
+    static Level make_level(double roughness);
+    struct Position {
+        size_t first;
+        double fraction;
+    };
+    Position position(float roughness) const noexcept;
+    std::vector<Level> levels_;  ///< one, or over the roughness
 };
 
 /// Of a base under a thin film.
@@ -40,6 +51,7 @@ struct FilmTables {
 
 struct OpenPbrTables {
     bool textured = false;                     ///< the tables of the base are over its roughness as well
+    bool coat_textured = false;                ///< likewise
     float eta = 1.5f;                          ///< of the base as a body: inside over outside
     double eta_outside = 1.5, coat_eta = 1.6;  ///< of reflections from outside
     double coat_normal_reflectance = 0, coat_inner_reflectance = 0;
@@ -51,8 +63,8 @@ struct OpenPbrTables {
 
 /// α along u and across: section "Microfacet model" of the specification.
 Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept;
-/// Of the base as roughened by the coat.
-float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness) noexcept;
+/// Of the base as roughened by the coat, where the two are as rough as that.
+float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness, float coat_roughness) noexcept;
 
 /// Tables by what they are made of, so that materials which have it in common share them.
 class SharedTables {
@@ -64,7 +76,7 @@ public:
     std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& r, double eta) {
         return energy(Kind::transmitting, r, eta);
     }
-    std::shared_ptr<const FuzzTable> fuzz(float roughness);
+    std::shared_ptr<const FuzzTable> fuzz(const FloatInput& roughness);
 
     /// What the tables of a film are made of.
     struct Film {
@@ -82,7 +94,7 @@ private:
 
     using Key = std::tuple<Kind, float, float, bool, bool, double>;
     std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
-    std::map<float, std::shared_ptr<const FuzzTable>> fuzz_;
+    std::map<std::pair<float, bool>, std::shared_ptr<const FuzzTable>> fuzz_;
     using FilmKey =
         std::tuple<std::array<double, 7>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool>;
     std::map<FilmKey, FilmTables> films_;

@@ -120,15 +120,25 @@ struct FloorFile {
     std::string material;                                    ///< members of the floor's
     std::string attributes = {}, primitive = {}, node = {};  ///< more members of the floor's
     std::string light = "\"type\": \"point\", \"intensity\": 10";
-    std::string light_rotation = "0, 0, 0, 1";
+    std::string light_rotation = "0, 0, 0, 1", light_place = "1.2, 1.6, 0";
     std::string extensions = {}, more = {}, more_materials = {};
     test::GltfBuilder builder = {};
     LoadOptions options = {};
+    bool quantized = false;  ///< then as normalised integers; positions are half as large
 
     LoadedScene load() {
-        const int p = builder.floats("VEC3", 3, {-2, 0, 2, 2, 0, 2, 2, 0, -2, -2, 0, -2});
-        const int n = builder.floats("VEC3", 3, {0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
-        const int uv = builder.floats("VEC2", 2, {0, 1, 1, 1, 1, 0, 0, 0});
+        const std::string_view normalized = ", \"normalized\": true";
+        const int p = quantized
+                          ? builder.accessor<int16_t>(
+                                "VEC3", 5122, 3,
+                                {-32767, 0, 32767, 32767, 0, 32767, 32767, 0, -32767, -32767, 0, -32767}, normalized)
+                          : builder.floats("VEC3", 3, {-2, 0, 2, 2, 0, 2, 2, 0, -2, -2, 0, -2});
+        const int n = quantized ? builder.accessor<int8_t>("VEC3", 5120, 3,
+                                                           {0, 127, 0, 0, 127, 0, 0, 127, 0, 0, 127, 0}, normalized)
+                                : builder.floats("VEC3", 3, {0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
+        const int uv =
+            quantized ? builder.accessor<int16_t>("VEC2", 5122, 2, {0, 32767, 32767, 32767, 32767, 0, 0, 0}, normalized)
+                      : builder.floats("VEC2", 2, {0, 1, 1, 1, 1, 0, 0, 0});
         const int i = builder.accessor<uint16_t>("SCALAR", 5123, 1, {0, 1, 2, 0, 2, 3});
         const auto number = [](int k) { return std::to_string(k); };
         const std::string text = builder.text(
@@ -137,10 +147,8 @@ struct FloorFile {
             ", \"material\": 0" + primitive + "}]}], \"materials\": [{" + material + "}" + more_materials +
             "], \"cameras\": [{\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.0008, \"aspectRatio\": 1, "
             "\"znear\": 0.1}}], \"nodes\": [{\"mesh\": 0" +
-            node +
-            "}, {\"camera\": 0, \"matrix\": [1,0,0,0, 0,0,-1,0, 0,1,0,0, 0,1,0,1]}, {\"translation\": [1.2, 1.6, 0], "
-            "\"rotation\": [" +
-            light_rotation +
+            node + "}, {\"camera\": 0, \"matrix\": [1,0,0,0, 0,0,-1,0, 0,1,0,0, 0,1,0,1]}, {\"translation\": [" +
+            light_place + "], \"rotation\": [" + light_rotation +
             "], \"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}}], \"extensions\": {\"KHR_lights_punctual\": "
             "{\"lights\": [{" +
             light + "}]}" + extensions + "}" + more);
@@ -306,6 +314,78 @@ TEST(GltfCases, WhiteFurnaces) {
     furnace("grain", "\"roughnessFactor\": 0.3", "\"KHR_materials_anisotropy\": {\"anisotropyStrength\": 0.5}");
     furnace("clearcoat", "\"roughnessFactor\": 0.5, \"metallicFactor\": 0",
             "\"KHR_materials_clearcoat\": {\"clearcoatFactor\": 1}");
+}
+
+/// Of the light that is scattered, that part passes the sheet; from below is what has passed.
+TEST(GltfCases, DiffuseTransmission) {
+    const std::string material =
+        "\"pbrMetallicRoughness\": {\"metallicFactor\": 0, \"baseColorFactor\": [0.8, 0.4, 0.2, "
+        "1]}, \"extensions\": {\"KHR_materials_specular\": {\"specularFactor\": 0}, "
+        "\"KHR_materials_diffuse_transmission\": {\"diffuseTransmissionFactor\": 0.25, "
+        "\"diffuseTransmissionColorFactor\": [0.1, 1, 0.6]}}";
+    expect_floor("diffuse transmission, lit from above", {.material = material},
+                 lit(0.75 * 0.8, 0.75 * 0.4, 0.75 * 0.2));
+    expect_floor("diffuse transmission, lit from below", {.material = material, .light_place = "1.2, -1.6, 0"},
+                 lit(0.25 * 0.1, 0.25 * 1, 0.25 * 0.6));
+}
+
+/// White sky on both sides, from straight above. Of one boundary of index 1.5 the reflectance is 0.04.
+TEST(GltfCases, Transmission) {
+    LoadOptions white;
+    white.environment.replace = Rgb{1, 1, 1};
+    const auto expect = [&](const std::string& id, const std::string& pbr, const std::string& extensions, Color value) {
+        expect_floor(id,
+                     {.material = "\"pbrMetallicRoughness\": {\"metallicFactor\": 0, " + pbr +
+                                  "}, \"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 1}" +
+                                  extensions + "}",
+                      .options = white},
+                     value, 2e-3, CaseClass::stochastic);
+    };
+    const double r = 0.04;
+    // A sheet: everything that bounces within it leaves on one of its sides.
+    const auto sheet = [&](double t) {
+        const double series = (1 - r) * (1 - r) / (1 - r * r * t * t);
+        return r + series * r * t * t + series * t;
+    };
+    const std::string tint = "\"baseColorFactor\": [1, 0.5, 0.25, 1]";
+    const Color thin{1, sheet(0.5), sheet(0.25)};
+    expect("thin sheet", tint + ", \"roughnessFactor\": 0", "", thin);
+    expect("thin sheet, as good as smooth", tint + ", \"roughnessFactor\": 0.02", "", thin);
+    expect("rough white sheet", "\"roughnessFactor\": 0.5", "", {1, 1, 1});
+    // A body: what is within it appears darker by the square of the index.
+    const auto body = [&](double t) { return r + (1 - r) * t / (1.5 * 1.5); };
+    expect("solid body", tint + ", \"roughnessFactor\": 0", ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}",
+           {body(1), body(0.5), body(0.25)});
+}
+
+/// On black: the distribution of the extension, (2 + 1/α) sin(θ_h)^(1/α) / 2π with α the square of the roughness, over
+/// 4 (cos θ_i + cos θ_o - cos θ_i cos θ_o).
+TEST(GltfCases, Sheen) {
+    for (const double roughness : {0.6, 0.8, 1.0}) {
+        const double inverse = 1 / (roughness * roughness), sine2 = (1 - 0.8) / 2;
+        const double d = (2 + inverse) * std::pow(sine2, inverse / 2) / (2 * std::numbers::pi);
+        const double value = d / (4 * (0.8 + 1 - 0.8)) * 0.8 * 10 / 4;
+        expect_floor(
+            "sheen, roughness " + std::to_string(roughness),
+            {.material = "\"pbrMetallicRoughness\": {\"metallicFactor\": 0, \"baseColorFactor\": [0, 0, 0, 1]}, "
+                         "\"extensions\": {\"KHR_materials_specular\": {\"specularFactor\": 0}, "
+                         "\"KHR_materials_sheen\": {\"sheenColorFactor\": [0.5, 0.25, 1], "
+                         "\"sheenRoughnessFactor\": " +
+                         std::to_string(roughness) + "}}"},
+            {value * 0.5, value * 0.25, value});
+    }
+}
+
+/// Positions, normals and texture coordinates as normalised integers.
+TEST(GltfCases, Quantization) {
+    const std::string moved =
+        ", \"baseColorTexture\": {\"index\": 0, \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0.25, "
+        "-0.25]}}}";
+    FloorFile file{.material = matte("[1, 1, 1, 1]", moved),
+                   .node = ", \"scale\": [2, 1, 2]",
+                   .more = std::string(kTexture) + ", \"extensionsRequired\": [\"KHR_mesh_quantization\"]"};
+    file.quantized = true;
+    expect_floor("quantised", file, lit(linear(51), linear(102), 1));
 }
 
 TEST(GltfCases, ChoicesOfTheCaller) {

@@ -229,7 +229,8 @@ TEST(NativeScene, OpenPbr) {
                 "coat_ior": 1.21, "coat_darkening": 0.22, "geometry_opacity": 0.23, "subsurface_scatter_anisotropy": 0.24,
                 "thin_film_weight": 0.25, "thin_film_thickness": 0.26, "thin_film_ior": 1.27,
                 "emission_luminance": 0.28, "emission_color": 0.29, "geometry_thin_walled": true},
-        "textured": {"type": "open_pbr", "base_color": "t", "specular_roughness": "t"}})"));
+        "textured": {"type": "open_pbr", "base_color": "t", "specular_roughness": "t",
+                     "specular_color": "t", "coat_roughness": "t", "fuzz_roughness": "t"}})"));
     const auto get = [&](size_t i) { return std::get<OpenPbrMaterial>(loaded.scene.materials[i]); };
     const OpenPbrMaterial plain = get(0), m = get(1), textured = get(2);
     EXPECT_EQ(plain.base_color.value, (Rgb{0.8f, 0.8f, 0.8f}));
@@ -241,7 +242,7 @@ TEST(NativeScene, OpenPbr) {
                              m.base_metalness.value,
                              m.base_diffuse_roughness,
                              m.specular_weight,
-                             m.specular_color.g,
+                             m.specular_color.value.g,
                              m.specular_roughness.value,
                              m.specular_ior - 1,
                              m.specular_roughness_anisotropy,
@@ -251,10 +252,10 @@ TEST(NativeScene, OpenPbr) {
                              m.subsurface_color.value.r,
                              m.fuzz_weight.value,
                              m.fuzz_color.value.g,
-                             m.fuzz_roughness,
+                             m.fuzz_roughness.value,
                              m.coat_weight,
                              m.coat_color.value.b,
-                             m.coat_roughness,
+                             m.coat_roughness.value,
                              m.coat_roughness_anisotropy,
                              m.coat_ior - 1,
                              m.coat_darkening,
@@ -270,6 +271,8 @@ TEST(NativeScene, OpenPbr) {
     for (size_t i = 0; i < std::size(numbers); ++i) EXPECT_NEAR(numbers[i], 0.01 * double(i + 1), 1e-6) << i;
     EXPECT_EQ(textured.base_color.value, (Rgb{1, 1, 1}));
     EXPECT_EQ(textured.base_color.texture, TextureId{0});
+    EXPECT_EQ(textured.specular_color.texture, TextureId{0});
+    for (const FloatInput& in : {textured.coat_roughness, textured.fuzz_roughness}) EXPECT_EQ(in.texture, TextureId{0});
     EXPECT_EQ(textured.specular_roughness.value, 1);
     EXPECT_EQ(textured.specular_roughness.texture, TextureId{0});
 }

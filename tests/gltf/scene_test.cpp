@@ -240,20 +240,43 @@ TEST(GltfMaterial, ColourFactorsOutsideTheirRangeAreClamped) {
     EXPECT_EQ(sheen.fuzz_color.value, (Rgb{1, 0, 0.5f}));
     const auto specular = material_of<OpenPbrMaterial>(
         loaded(extension("KHR_materials_specular", "\"specularColorFactor\": [2, -1, 1]"), "specularColorFactor"));
-    EXPECT_EQ(specular.specular_color, (Rgb{1, 0, 0.5f}));
+    EXPECT_EQ(specular.specular_color.value, (Rgb{1, 0, 0.5f}));
     EXPECT_EQ(specular.specular_weight, 2);
     const LoadedScene thin =
         loaded(extension("KHR_materials_diffuse_transmission",
                          "\"diffuseTransmissionFactor\": 1, \"diffuseTransmissionColorFactor\": [0.5, 7, -7]"),
                "diffuseTransmissionColorFactor");
-    const auto transmits = material_of<DiffuseTransmissionMaterial>(thin);
-    EXPECT_EQ(std::get<ConstantTexture>(thin.scene.textures[index(transmits.transmittance)]).value, (Rgb{0.5f, 1, 0}));
+    const auto transmits = material_of<OpenPbrMaterial>(thin);
+    EXPECT_EQ(transmits.subsurface_color.value, (Rgb{0.5f, 1, 0}));
+    EXPECT_EQ(transmits.subsurface_weight.value, 1);
+    EXPECT_TRUE(transmits.geometry_thin_walled);
     const auto absorbs = material_of<OpenPbrMaterial>(loaded(
         "\"pbrMetallicRoughness\": {\"metallicFactor\": 0}, \"extensions\": {\"KHR_materials_transmission\": "
         "{\"transmissionFactor\": 1}, \"KHR_materials_volume\": {\"thicknessFactor\": 2, \"attenuationDistance\": 1, "
         "\"attenuationColor\": [1.5, 0.25, -1]}}",
         "attenuationColor"));
     EXPECT_EQ(absorbs.transmission_color.value, (Rgb{1, 0.25f, 0}));
+}
+
+TEST(GltfMaterial, DiffuseTransmissionIsThatOfSheets) {
+    const auto with = [](const std::string& more) {
+        return with_material(
+            "\"pbrMetallicRoughness\": {\"metallicFactor\": 0}, \"extensions\": "
+            "{\"KHR_materials_diffuse_transmission\": "
+            "{\"diffuseTransmissionFactor\": 0.5}" +
+            more + "}");
+    };
+    const std::string volume = ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}";
+    EXPECT_TRUE(with("").fidelity.empty());
+    EXPECT_TRUE(has(with(volume).fidelity, "thin sheet"));
+    const std::string transparent = ", \"KHR_materials_transmission\": {\"transmissionFactor\": 0.5}";
+    const auto thin = material_of<OpenPbrMaterial>(with(transparent));
+    EXPECT_EQ(thin.subsurface_weight.value, 0.5f);
+    EXPECT_TRUE(thin.geometry_thin_walled);
+    const LoadedScene solid = with(transparent + volume);
+    EXPECT_TRUE(has(solid.fidelity, "also transparent"));
+    EXPECT_EQ(material_of<OpenPbrMaterial>(solid).subsurface_weight.value, 0);
+    EXPECT_FALSE(material_of<OpenPbrMaterial>(solid).geometry_thin_walled);
 }
 
 TEST(GltfMaterial, IridescenceIsAThinFilm) {

@@ -195,7 +195,7 @@ TEST(LightParts, WhatTheCameraSeesDirectlyIsEmissionOrBackground) {
 // with a specular colour of black, whose layering is the same.
 TEST(LightParts, TheDiffusePartOfPlasticIsThatOfItsMatteBase) {
     OpenPbrMaterial plastic, matte;
-    matte.specular_color = {0, 0, 0};
+    matte.specular_color.value = {0, 0, 0};
     const PointLight lamp{{1, 1, 3}, {5, 5, 5}};
     RenderSettings settings = settings_with(all_parts(), 16);
     settings.max_depth = 1;

@@ -61,13 +61,13 @@ TEST(OpenPbr, RandomMaterialsGainNothing) {
         const auto some = [&](float& x) { x = static_cast<float>(random.between(0, 1)); };
         for (float* x : {&m.base_weight, &m.base_metalness.value, &m.base_diffuse_roughness, &m.specular_weight,
                          &m.specular_roughness.value, &m.specular_roughness_anisotropy, &m.subsurface_weight.value,
-                         &m.fuzz_weight.value, &m.fuzz_roughness, &m.coat_weight, &m.coat_roughness,
+                         &m.fuzz_weight.value, &m.fuzz_roughness.value, &m.coat_weight, &m.coat_roughness.value,
                          &m.coat_roughness_anisotropy, &m.coat_darkening})
             some(*x);
         if (i % 3 == 0) some(m.transmission_weight.value);
         m.geometry_thin_walled = i % 6 == 0;
         if (i % 4 == 0) some(m.thin_film_weight), some(m.thin_film_thickness);
-        for (Rgb* c : {&m.base_color.value, &m.specular_color, &m.subsurface_color.value, &m.fuzz_color.value,
+        for (Rgb* c : {&m.base_color.value, &m.specular_color.value, &m.subsurface_color.value, &m.fuzz_color.value,
                        &m.coat_color.value, &m.transmission_color.value})
             some(c->r), some(c->g), some(c->b);
         m.specular_ior = static_cast<float>(random.between(1.05, 2.5));
@@ -85,7 +85,7 @@ TEST(OpenPbr, RandomMaterialsGainNothing) {
 /// Of the metal alone, smooth: Schlick towards the edge, and at 82 degrees the specular colour times that.
 TEST(OpenPbr, MetalsHaveTheirColourAt82Degrees) {
     OpenPbrMaterial m;
-    m.base_metalness.value = 1, m.base_color.value = {0.9f, 0.5f, 0.1f}, m.specular_color = {1, 0.6f, 0.3f};
+    m.base_metalness.value = 1, m.base_color.value = {0.9f, 0.5f, 0.1f}, m.specular_color.value = {1, 0.6f, 0.3f};
     m.specular_roughness.value = 0;
     const OneMaterial material(m);
     Random random(62);
@@ -95,7 +95,7 @@ TEST(OpenPbr, MetalsHaveTheirColourAt82Degrees) {
     for (int c = 0; c < 3; ++c) {
         const double base = m.base_color.value[c], at_82 = base + (1 - base) * std::pow(6 / 7.0, 5);
         EXPECT_NEAR(reflected(1, c), base, 2e-3);
-        EXPECT_NEAR(reflected(1 / 7.0, c), at_82 * m.specular_color[c], 2e-3);
+        EXPECT_NEAR(reflected(1 / 7.0, c), at_82 * m.specular_color.value[c], 2e-3);
     }
 }
 
@@ -264,20 +264,23 @@ TEST(OpenPbr, EqualRoughnessesShareTheirTables) {
 /// The table against sampling, and its limit.
 TEST(OpenPbr, FuzzReflectsWhatItsTableSays) {
     Random random(65);
-    for (const float roughness : {0.0f, 0.1f, 0.5f, 1.0f}) {
-        const FuzzTable fuzz(roughness);
+    // The last ones by a table over all roughnesses, between two of its own.
+    for (const auto& [roughness, textured] :
+         {std::pair(0.0f, false), {0.1f, false}, {0.5f, false}, {1.0f, false}, {0.16f, true}, {0.72f, true}}) {
+        const FuzzTable fuzz(textured ? FloatInput{1, TextureId{}} : FloatInput{roughness});
         for (const double mu : {0.9, 0.4, 0.1, 0.02}) {
             const Vec3d wo{std::sqrt(1 - mu * mu), 0, mu};
             double sum = 0, squares = 0;
             const int n = 40000;
             for (int i = 0; i < n; ++i) {
                 const Vec3d wi = warp::hemisphere(random.uniform2());
-                const double w = fuzz.eval(wo, wi).r / warp::kHemispherePdf;
+                const double w = fuzz.eval(roughness, wo, wi).r / warp::kHemispherePdf;
                 sum += w, squares += w * w;
             }
             const double mean = sum / n, error = std::sqrt((squares / n - mean * mean) / n);
-            EXPECT_NEAR(fuzz.albedo(mu), mean, 5 * error + 2e-3) << roughness << " " << mu;
-            EXPECT_LE(fuzz.albedo(mu), 1);
+            EXPECT_NEAR(fuzz.albedo(roughness, mu), mean, 5 * error + (textured ? 1e-2 : 2e-3))
+                << roughness << " " << mu;
+            EXPECT_LE(fuzz.albedo(roughness, mu), 1);
         }
     }
 }

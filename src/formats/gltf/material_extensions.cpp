@@ -35,7 +35,6 @@ void Materials::read_transmission(const Object& material, Reading& r) {
     const double thickness = volume ? volume->number_or("thicknessFactor", 0, kNotNegative) : 0;
     r.solid = thickness > 0;
     if (!r.solid || s.transmission_weight.value == 0) return;
-    no_texture(*volume, "thicknessTexture");
     if (!volume->has("attenuationDistance")) return;
     const double distance = volume->number_or("attenuationDistance", 1, {0, 1e30, true});
     const Rgb color = this->color(*volume, "attenuationColor", {1, 1, 1});
@@ -63,31 +62,42 @@ void Materials::read_specular(const Object& material, Reading& r) {
     s.specular_ior = static_cast<float>(ior);
     const auto specular = material.extension("KHR_materials_specular");
     if (!specular) return;
-    no_texture(*specular, "specularTexture");
-    no_texture(*specular, "specularColorTexture");
     Rgb color = this->color(*specular, "specularColorFactor", {1, 1, 1}, kNotNegative.max);
     const double most = max_component(color);
     const double weight = static_cast<double>(unit(*specular, "specularFactor", 1)) * most;
-    if (most > 0 && s.base_metalness.value < 1) s.specular_color = color * static_cast<float>(1 / most);
-    for (int c = 0; c < 3; ++c) s.specular_color[c] = min_of(s.specular_color[c], 1.0f);
+    if (most > 0 && s.base_metalness.value < 1) {
+        s.specular_color = {color * static_cast<float>(1 / most),
+                            texture(*specular, "specularColorTexture", Plane::color, r)};
+        for (int c = 0; c < 3; ++c) s.specular_color.value[c] = min_of(s.specular_color.value[c], 1.0f);
+    }
     if (s.base_metalness.value == 0)
         s.specular_weight = static_cast<float>(min_of(weight, 10.0));
     else
         s.specular_ior = static_cast<float>(ior_of(weight * reflectance_of(ior)));
+    if (weight > 0)
+        read_weight(*specular, "specularTexture", Plane::alpha, r, [](OpenPbrMaterial& without) {
+            if (without.base_metalness.value == 0)
+                without.specular_weight = 0;
+            else
+                without.specular_ior = 1;
+        });
 }
 
 void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     s.coat_weight = unit(clearcoat, "clearcoatFactor", 0);
     if (s.coat_weight == 0) return;
-    s.coat_roughness = unit(clearcoat, "clearcoatRoughnessFactor", 0);
+    s.coat_roughness = {unit(clearcoat, "clearcoatRoughnessFactor", 0),
+                        texture(clearcoat, "clearcoatRoughnessTexture", Plane::green, r)};
     s.coat_ior = 1.5f;
     s.coat_darkening = 0;
-    for (const std::string_view key : {"clearcoatTexture", "clearcoatRoughnessTexture", "clearcoatNormalTexture"})
-        no_texture(clearcoat, key);
+    read_weight(clearcoat, "clearcoatTexture", Plane::red, r,
+                [](OpenPbrMaterial& without) { without.coat_weight = 0; });
+    no_texture(clearcoat, "clearcoatNormalTexture");
 }
 
-/// As fuzz, whose model is another one: near, not the same.
+/// As fuzz, of the same distribution of fibres: the extension squares its roughness, OpenPBR does not. What a base
+/// below gets, and the masking, are near, not the same.
 void Materials::read_sheen(const Object& sheen, Reading& r) {
     const Rgb color = this->color(sheen, "sheenColorFactor", {0, 0, 0});
     const float most = max_component(color);
@@ -95,9 +105,11 @@ void Materials::read_sheen(const Object& sheen, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     s.fuzz_weight.value = most;
     s.fuzz_color = {color * (1 / most), texture(sheen, "sheenColorTexture", Plane::color, r)};
-    s.fuzz_roughness = unit(sheen, "sheenRoughnessFactor", 0);
+    const float roughness = unit(sheen, "sheenRoughnessFactor", 0);
+    s.fuzz_roughness = {roughness * roughness};
+    if (const auto t = texture(sheen, "sheenRoughnessTexture", Plane::alpha, r))
+        s.fuzz_roughness.texture = context_.assets.add_texture(ProductTexture{*t, *t}, "");
     for (int c = 0; c < 3; ++c) s.fuzz_color.value[c] = min_of(s.fuzz_color.value[c], 1.0f);
-    no_texture(sheen, "sheenRoughnessTexture");
 }
 
 /// α along the grain is mix(α, 1, strength²), across it α: the roughness and anisotropy of OpenPBR that give the two.
@@ -132,25 +144,44 @@ void Materials::read_iridescence(const Object& iridescence, Reading& r) {
                               iridescence.offset_of("iridescenceIor"));
     s.thin_film_thickness = static_cast<float>(min_of(thickness, kThickest));
     s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, kLargest));
-    no_texture(iridescence, "iridescenceTexture");
+    read_weight(iridescence, "iridescenceTexture", Plane::red, r,
+                [](OpenPbrMaterial& without) { without.thin_film_weight = 0; });
     if (const auto value = iridescence.find("iridescenceThicknessTexture"))
         context_.not_honoured("films are as thick everywhere as 'iridescenceThicknessMaximum' says", value->offset());
 }
 
-void Materials::read_diffuse_transmission(const Object& extension, Reading& r) {
+/// What the base scatters goes through the sheet instead, to that part: a thin wall whose subsurface scatters forward.
+void Materials::read_diffuse_transmission(const Object& material, Reading& r) {
+    const auto found = material.extension("KHR_materials_diffuse_transmission");
+    if (!found) return;
+    const Object& extension = *found;
     const float factor = unit(extension, "diffuseTransmissionFactor", 0);
     if (factor == 0) return;
-    const OpenPbrMaterial& s = r.surface;
-    const bool textured = s.base_color.texture || extension.has("diffuseTransmissionTexture") ||
-                          extension.has("diffuseTransmissionColorTexture");
-    if (textured || s.base_metalness.value > 0 || s.geometry_opacity.value < 1 || s.geometry_opacity.texture) {
-        context_.not_honoured("diffuse transmission has no effect beside textures, metal or opacity",
+    OpenPbrMaterial& s = r.surface;
+    if (r.solid && s.transmission_weight.value > 0) {
+        context_.not_honoured("diffuse transmission of a solid body that is also transparent has no effect",
                               extension.offset());
         return;
     }
-    r.diffuse_transmission = factor;
-    r.diffuse_transmission_color = color(extension, "diffuseTransmissionColorFactor", {1, 1, 1});
-    context_.not_honoured("materials with diffuse transmission have no gloss", extension.offset());
+    const auto volume = material.extension("KHR_materials_volume");
+    if (volume && volume->number_or("thicknessFactor", 0, kNotNegative) > 0)
+        context_.not_honoured("a body that scatters within is taken as a thin sheet", volume->offset());
+    s.subsurface_weight = {factor, texture(extension, "diffuseTransmissionTexture", Plane::alpha, r)};
+    s.subsurface_color = {color(extension, "diffuseTransmissionColorFactor", {1, 1, 1}),
+                          texture(extension, "diffuseTransmissionColorTexture", Plane::color, r)};
+    s.subsurface_scatter_anisotropy = 1;
+    s.geometry_thin_walled = true;
+}
+
+/// A weight of a layer by a texture: where it is 1 there is the material as read so far, where it is 0 the same without
+/// the layer, and between them a mix. That is how the specifications define these weights.
+void Materials::read_weight(const Object& extension, std::string_view key, Plane plane, Reading& r, Remove remove) {
+    const auto weight = texture(extension, key, plane, r);
+    if (!weight) return;
+    if (r.layers.size() == kMostLayers)
+        no_texture(extension, key);
+    else
+        r.layers.push_back({*weight, remove});
 }
 
 void Materials::read_extensions(const Object& material, Reading& r) {
@@ -166,16 +197,8 @@ void Materials::read_extensions(const Object& material, Reading& r) {
     if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
     if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);
     if (const auto iridescence = material.extension("KHR_materials_iridescence")) read_iridescence(*iridescence, r);
-    if (const auto diffuse = material.extension("KHR_materials_diffuse_transmission"))
-        read_diffuse_transmission(*diffuse, r);
-    if (!r.solid && r.surface.transmission_weight.value > 0) {
-        const OpenPbrMaterial& s = r.surface;
-        const bool plain = s.transmission_weight.value == 1 && !s.transmission_weight.texture &&
-                           s.specular_roughness.value == 0 && !s.base_color.texture && s.base_metalness.value == 0;
-        if (!plain)
-            context_.not_honoured("a thin sheet that is rough, textured or transmits partly refracts like a solid body",
-                                  material.offset());
-    }
+    read_diffuse_transmission(material, r);
+    if (!r.solid && r.surface.transmission_weight.value > 0) r.surface.geometry_thin_walled = true;
 }
 
 }  // namespace steradian::gltf

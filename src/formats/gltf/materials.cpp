@@ -129,12 +129,12 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
         return ConductorMaterial{SchlickReflectance{color()}, Roughness{}};
     if (s.base_metalness.value > 0) return std::nullopt;
     const bool all_glass = s.transmission_weight.value == 1 && !s.transmission_weight.texture;
-    if (all_glass && smooth && !s.base_color.texture && s.specular_weight == 1) {
+    if (all_glass && smooth && !s.base_color.texture && s.specular_weight == 1 && !s.specular_color.texture) {
         const Rgb tint = s.transmission_color.value;
-        if (r.solid) return GlassMaterial{s.specular_ior, s.specular_color, tint};
-        if (is_white(s.specular_color)) return ThinGlassMaterial{s.specular_ior, tint};
+        if (r.solid) return GlassMaterial{s.specular_ior, s.specular_color.value, tint};
+        if (is_white(s.specular_color.value)) return ThinGlassMaterial{s.specular_ior, tint};
     }
-    if (s.specular_weight == 0 && s.transmission_weight.value == 0 && r.diffuse_transmission == 0)
+    if (s.specular_weight == 0 && s.transmission_weight.value == 0 && s.subsurface_weight.value == 0)
         return DiffuseMaterial{color(), true};
     return std::nullopt;
 }
@@ -151,17 +151,23 @@ MaterialId Materials::make_unlit(const Reading& r, const std::string& name) {
     return context_.assets.add_material(black, name);
 }
 
+MaterialId Materials::make_plain(const Reading& r, const std::string& name) {
+    const auto simple = r.unlit ? std::nullopt : make_simple(r, name);
+    const MaterialId out = r.unlit  ? make_unlit(r, name)
+                           : simple ? context_.assets.add_material(*simple, name)
+                                    : context_.assets.add_material(r.surface, name);
+    if (r.normals) context_.loaded.scene.reliefs.push_back({out, *r.normals});
+    return out;
+}
+
 MaterialId Materials::make(const Reading& r, const std::string& name) {
-    if (r.unlit) return make_unlit(r, name);
-    if (const auto simple = make_simple(r, name)) return context_.assets.add_material(*simple, name);
-    if (r.diffuse_transmission > 0) {
-        const auto constant = [&](Rgb c) { return context_.assets.add_texture(ConstantTexture{c}, name); };
-        const float t = r.diffuse_transmission;
-        return context_.assets.add_material(DiffuseTransmissionMaterial{constant(r.surface.base_color.value * (1 - t)),
-                                                                        constant(r.diffuse_transmission_color * t)},
-                                            name);
-    }
-    return context_.assets.add_material(r.surface, name);
+    if (r.layers.empty()) return make_plain(r, name);
+    Reading with = r;
+    with.layers.pop_back();
+    Reading without = with;
+    r.layers.back().remove(without.surface);
+    const MaterialId first = make(without, name), second = make(with, name);
+    return context_.assets.add_material(MixMaterial{first, second, {1, r.layers.back().weight}}, name);
 }
 
 /// Section 3.9.3. The map turns the normals; `scale` multiplies what is along the surface.
@@ -184,7 +190,6 @@ Look Materials::finish(const Reading& r, const std::string& name) {
     out.emission = r.emission;
     out.emission_texture = r.emission_texture;
     out.uv_sets = r.uv_sets;
-    if (r.normals) context_.loaded.scene.reliefs.push_back({out.material, *r.normals});
     const bool has_grain = r.surface.specular_roughness_anisotropy > 0;
     out.tangents = r.tangents ? r.tangents : has_grain ? std::optional(0u) : std::nullopt;
     if (out.tangents) out.uv_sets |= 1u << *out.tangents;

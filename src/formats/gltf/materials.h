@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "formats/gltf/images.h"
 
@@ -30,6 +31,7 @@ public:
     const Look& look(std::optional<uint32_t> number, VertexColors colors);
 
 private:
+    using Remove = void (*)(OpenPbrMaterial&);
     /// One material while it is being read.
     struct Reading {
         OpenPbrMaterial surface;
@@ -42,9 +44,15 @@ private:
         std::optional<TextureUse> base_color;
         bool unlit = false;
         bool solid = true;  ///< what transmits encloses a volume; false: it is a thin sheet
-        float diffuse_transmission = 0;
-        Rgb diffuse_transmission_color{1, 1, 1};
+        /// Layers that are there as far as a texture says.
+        struct Layer {
+            TextureId weight;
+            Remove remove;
+        };
+        std::vector<Layer> layers;
     };
+    static constexpr size_t kMostLayers = 2;  ///< 2² materials are kMaxMixed
+    static_assert(size_t(1) << kMostLayers <= kMaxMixed);
     static Reading start(VertexColors colors);
     Look read(const Object& material, VertexColors colors, const std::string& name);
     Look finish(const Reading& r, const std::string& name);
@@ -54,6 +62,7 @@ private:
     void read_normals(const Object& material, Reading& r);
     void multiply_by_vertices(std::optional<TextureId>& texture, bool alpha);
     MaterialId make(const Reading& r, const std::string& name);
+    MaterialId make_plain(const Reading& r, const std::string& name);
     MaterialId make_unlit(const Reading& r, const std::string& name);
     std::optional<Material> make_simple(const Reading& r, const std::string& name);
     std::optional<TextureId> texture(const Object& object, std::string_view key, Plane plane, Reading& r);
@@ -68,11 +77,12 @@ private:
     void read_extensions(const Object& material, Reading& r);
     void read_transmission(const Object& material, Reading& r);
     void read_specular(const Object& material, Reading& r);
+    void read_diffuse_transmission(const Object& material, Reading& r);
     void read_clearcoat(const Object& clearcoat, Reading& r);
     void read_sheen(const Object& sheen, Reading& r);
     void read_anisotropy(const Object& anisotropy, Reading& r);
     void read_iridescence(const Object& iridescence, Reading& r);
-    void read_diffuse_transmission(const Object& extension, Reading& r);
+    void read_weight(const Object& extension, std::string_view key, Plane plane, Reading& r, Remove remove);
 
     Context& context_;
     Images& images_;

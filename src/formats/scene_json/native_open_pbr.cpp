@@ -32,7 +32,7 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     input("base_metalness", m.base_metalness);
     number("base_diffuse_roughness", m.base_diffuse_roughness);
     number("specular_weight", m.specular_weight, {0, 10});
-    m.specular_color = material.color_or("specular_color", m.specular_color, kUnit);
+    input("specular_color", m.specular_color);
     input("specular_roughness", m.specular_roughness);
     number("specular_ior", m.specular_ior, {0.1, 10});
     number("specular_roughness_anisotropy", m.specular_roughness_anisotropy);
@@ -43,10 +43,10 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("subsurface_scatter_anisotropy", m.subsurface_scatter_anisotropy, {-1, 1});
     input("fuzz_weight", m.fuzz_weight);
     input("fuzz_color", m.fuzz_color);
-    number("fuzz_roughness", m.fuzz_roughness);
+    input("fuzz_roughness", m.fuzz_roughness);
     number("coat_weight", m.coat_weight);
     input("coat_color", m.coat_color);
-    number("coat_roughness", m.coat_roughness);
+    input("coat_roughness", m.coat_roughness);
     number("coat_roughness_anisotropy", m.coat_roughness_anisotropy);
     number("coat_ior", m.coat_ior, {1.01, 3});
     number("coat_darkening", m.coat_darkening);

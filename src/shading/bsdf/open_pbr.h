@@ -17,15 +17,20 @@ inline Microfacets open_pbr_facets(float roughness, float anisotropy, float leve
     return {max_of(min_of(alpha.x, 1.0f), kMinAlpha), max_of(min_of(alpha.y, 1.0f), kMinAlpha), level};
 }
 
+/// Of the coat, where its roughness is that.
+inline Microfacets open_pbr_coat(const OpenPbrMaterial& m, const OpenPbrTables& tables, float roughness) {
+    return open_pbr_facets(roughness, m.coat_roughness_anisotropy, tables.coat_textured ? roughness : 1);
+}
+
 /// The metal: Schlick's approximation with a dip at 82 degrees ("F82-tint").
-inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Microfacets facets,
+inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Rgb specular_color, Microfacets facets,
                                     const MicrofacetEnergy* energy, const FilmOnMetal* film) {
     constexpr double kMu = 1.0 / 7, kRest = 6.0 / 7;
     const double schlick = kRest * kRest * kRest * kRest * kRest;
     ConductorBsdf::Schlick f{color, {1, 1, 1}, {}};
     for (int c = 0; c < 3; ++c) {
         const double at_82 = color[c] + (1 - color[c]) * schlick;
-        f.dip[c] = static_cast<float>(at_82 * (1 - m.specular_color[c]) / (kMu * schlick * kRest));
+        f.dip[c] = static_cast<float>(at_82 * (1 - specular_color[c]) / (kMu * schlick * kRest));
     }
     ConductorBsdf out;
     out.fresnel = f;
@@ -65,15 +70,16 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     OpenPbrBsdf out;
     out.tables = &tables;
     const Rgb base = color(m.base_color) * m.base_weight;
-    const float roughness = open_pbr_roughness(m, number(m.specular_roughness));
+    const float coat_roughness = number(m.coat_roughness);
+    const float roughness = open_pbr_roughness(m, number(m.specular_roughness), coat_roughness);
     const float level = tables.textured ? roughness : 1;
     const Microfacets facets = open_pbr_facets(roughness, m.specular_roughness_anisotropy, level);
     out.metalness = number(m.base_metalness);
-    out.metal = open_pbr_metal(m, base, facets, tables.metal.get(), tables.film.metal.get());
+    out.specular_color = color(m.specular_color);
+    out.metal = open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get());
     out.transmission = number(m.transmission_weight);
-    out.glass = {tables.eta, m.specular_color,   color(m.transmission_color),
+    out.glass = {tables.eta, out.specular_color, color(m.transmission_color),
                  facets,     tables.glass.get(), tables.film.glass.get()};
-    out.specular_color = m.specular_color;
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
     out.subsurface = number(m.subsurface_weight);
@@ -83,7 +89,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     out.coat_weight = m.coat_weight;
     out.coat_color = color(m.coat_color);
     if (tables.coat) {
-        out.coat = open_pbr_facets(m.coat_roughness, m.coat_roughness_anisotropy, 1);
+        out.coat = open_pbr_coat(m, tables, coat_roughness);
         const double spec = 1 - tables.dielectric->mean_loss(facets);
         const float t = out.transmission, s = out.subsurface;
         Rgb albedo;
@@ -97,6 +103,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     }
     out.fuzz_weight = number(m.fuzz_weight);
     out.fuzz_color = color(m.fuzz_color);
+    out.fuzz_roughness = number(m.fuzz_roughness);
     return out;
 }
 
@@ -120,7 +127,7 @@ struct OpenPbrShares {
         double left = 1;
         fuzz = left * lobe.fuzz_weight;
         if (t.fuzz) {
-            const double albedo = t.fuzz->albedo(wo.z);
+            const double albedo = t.fuzz->albedo(lobe.fuzz_roughness, wo.z);
             p_fuzz = fuzz * albedo;
             left -= p_fuzz;
         }
@@ -217,7 +224,8 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
     const Rgb below = coat_tint(lobe, wo, wi);
     if (wi.z > 0) {
         if (s.p_fuzz > 0)
-            out.diffuse = add({t.fuzz->eval(wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz, lobe.fuzz_color);
+            out.diffuse = add({t.fuzz->eval(lobe.fuzz_roughness, wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz,
+                              lobe.fuzz_color);
         if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, nullptr, wo, wi), s.coat, s.p_coat, {1, 1, 1});
         if (s.p_metal > 0) add(eval_local(lobe.metal, wo, wi, outside), s.metal, s.p_metal, below);
         if (s.p_dielectric > 0)
