@@ -167,15 +167,28 @@ def variants():
     return f.text()
 
 
+TEXTURED_EXTENSIONS = {
+    "KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}},
+    "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0}, "clearcoatRoughnessFactor": 1,
+                                "clearcoatRoughnessTexture": {"index": 1}},
+    "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenRoughnessFactor": 1,
+                            "sheenRoughnessTexture": {"index": 0}},
+    "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceTexture": {"index": 1}},
+    "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1, "diffuseTransmissionTexture": {"index": 0},
+                                           "diffuseTransmissionColorTexture": {"index": 1}},
+}
+
+
 def textured(picture, kind):
-    f = File(nodes=[{"mesh": 0}], samplers=[{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}],
+    f = File(extensionsUsed=sorted(TEXTURED_EXTENSIONS), nodes=[{"mesh": 0}], samplers=[{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}],
              textures=[{"source": 0, "sampler": 0}, {"source": 0}],
              materials=[{"pbrMetallicRoughness": {
                  "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
                      "offset": [0.5, 0], "scale": [2, 2], "rotation": 0.5, "texCoord": 0}}},
                  "metallicRoughnessTexture": {"index": 1, "texCoord": 0}},
                  "normalTexture": {"index": 1, "scale": 0.5}, "occlusionTexture": {"index": 1},
-                 "emissiveTexture": {"index": 1}, "emissiveFactor": [1, 1, 1], "alphaMode": "MASK", "alphaCutoff": 0.4}])
+                 "emissiveTexture": {"index": 1}, "emissiveFactor": [1, 1, 1], "alphaMode": "MASK", "alphaCutoff": 0.4,
+                 "extensions": TEXTURED_EXTENSIONS}])
     f.add("images", {"bufferView": f.view(picture), "mimeType": kind})
     f.mesh({"POSITION": f.accessor("VEC3", FLOAT, TRIANGLE), "TEXCOORD_0": f.accessor("VEC2", FLOAT, [0, 0, 1, 0, 0, 1])},
            material=0)
