@@ -3,14 +3,14 @@
 #     target_link_libraries(its_target PRIVATE steradian::steradian)
 include(CMakePackageConfigHelpers)
 
-set(steradian_layers base math image accel scene shading formats render)
+set(steradian_layers base math image accel scene shading formats lint render)
 set(steradian_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/steradian)
 
 # The one target for users; inside the project it has the same name.
 add_library(steradian_all INTERFACE)
 add_library(steradian::steradian ALIAS steradian_all)
 set_target_properties(steradian_all PROPERTIES EXPORT_NAME steradian)
-target_link_libraries(steradian_all INTERFACE steradian_formats steradian_render)
+target_link_libraries(steradian_all INTERFACE steradian_formats steradian_lint steradian_render)
 
 foreach(layer IN LISTS steradian_layers)
   set_target_properties(steradian_${layer} PROPERTIES EXPORT_NAME ${layer})

@@ -7,9 +7,12 @@
 #include "base/names.h"
 #include "base/text.h"
 #include "command.h"
+#include "findings.h"
 #include "math/transform.h"
 #include "picture_info.h"
 #include "progress.h"
+#include "render/memory_estimate.h"
+#include "steradian/lint.h"
 #include "steradian/load.h"
 #include "steradian/render.h"
 
@@ -23,11 +26,6 @@ struct SceneSummary {
     uint64_t geometry_bytes = 0, texel_bytes = 0;
     Vec3 lo{kInfinity, kInfinity, kInfinity}, hi{-kInfinity, -kInfinity, -kInfinity};
 };
-
-template <class T>
-uint64_t bytes_of(const std::vector<T>& v) {
-    return v.size() * sizeof(T);
-}
 
 void grow(SceneSummary& s, Vec3 p) {
     for (int a = 0; a < 3; ++a) s.lo[a] = min_of(s.lo[a], p[a]), s.hi[a] = max_of(s.hi[a], p[a]);
@@ -49,7 +47,7 @@ SceneSummary summarize(const Scene& scene) {
         for (const Vec3& p : m.positions) grow(meshes[i], p);
         s.triangles += m.indices.size() / 3;
         s.vertices += m.positions.size();
-        s.geometry_bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
+        s.geometry_bytes += mesh_bytes(m);
     }
     for (const RawImage& image : scene.images) s.texel_bytes += image.data.size();
     for (const Instance& i : scene.instances) {
@@ -82,7 +80,17 @@ std::string camera_name(const Scene& scene, size_t i) {
     return i < scene.names.cameras.size() ? scene.names.cameras[i] : std::to_string(i);
 }
 
-void print_text(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
+/// What is unused, out of range, approximated or ignored: what can be said without a look at the geometry.
+Result<LintReport> quick_findings(const LoadedScene& loaded) {
+    static constexpr std::string_view kQuick[] = {"not-honoured", "input", "unused", "out-of-range", "nan-vertices"};
+    LintOptions options;
+    for (const LintRule& rule : lint_rules())
+        if (std::find(std::begin(kQuick), std::end(kQuick), rule.name) == std::end(kQuick))
+            options.disabled.emplace_back(rule.name);
+    return lint(loaded, options);
+}
+
+void print_text(const std::string& path, const LoadedScene& loaded, const SceneSummary& s, const LintReport& findings) {
     const Scene& scene = loaded.scene;
     const RenderSettings& r = loaded.settings;
     std::cout << fmt::format("{}: a scene\n", escape_for_display(path, 4096));
@@ -125,9 +133,10 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
         "seed {}\n",
         r.width, r.height, r.samples_per_pixel, name_of(r.integrator), r.max_depth, name_of(r.filter.kind),
         r.filter.radius, name_of(r.sampler), r.seed);
+    print_findings(std::cout, findings, "  ");
 }
 
-void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s) {
+void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s, const LintReport& findings) {
     const Scene& scene = loaded.scene;
     rapidjson::StringBuffer buffer;
     JsonWriter w(buffer);
@@ -171,16 +180,20 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     text("filter", name_of(r.filter.kind)), w.Key("filter_radius"), w.Double(double(r.filter.radius));
     text("sampler", name_of(r.sampler)), number("seed", r.seed);
     w.EndObject();
+    write_findings(w, findings);
     w.EndObject();
     std::cout << buffer.GetString() << '\n';
 }
 
 Status print_scene_info(const std::string& path, bool json) {
-    const auto loaded = load_scene(path);
+    LoadOptions options;
+    options.locations = true;
+    const auto loaded = load_scene(path, options);
     if (!loaded) return loaded.error();
-    report(loaded->diagnostics);
+    const auto findings = quick_findings(*loaded);
+    if (!findings) return findings.error();
     const SceneSummary summary = summarize(loaded->scene);
-    json ? print_json(path, *loaded, summary) : print_text(path, *loaded, summary);
+    json ? print_json(path, *loaded, summary, *findings) : print_text(path, *loaded, summary, *findings);
     return Ok{};
 }
 

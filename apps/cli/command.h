@@ -136,6 +136,7 @@ CLI::App* add_command(CLI::App& app, Action& action, const std::string& name, co
 void add_render(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
+void add_lint(CLI::App& app, Action& action);
 void add_convert(CLI::App& app, Action& action);
 void add_diff(CLI::App& app, Action& action);
 

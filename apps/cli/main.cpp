@@ -29,6 +29,7 @@ constexpr const char* kExamples =
     "  steradian render model.glb --turntable 36             the model turned once, in 36 pictures\n"
     "  steradian replay scene.json --pixel 12,34 --sample 5  how one sample of one pixel came to its value\n"
     "  steradian info scene.json                             what is in a scene, or in a picture\n"
+    "  steradian lint scene.json                             mistakes in a scene: open glass, lights in walls, …\n"
     "  steradian convert a.exr a.png --view agx              from linear light to something to look at\n"
     "  steradian diff a.exr b.exr                            how far two pictures are apart\n"
     "\n"
@@ -80,6 +81,7 @@ int run(int argc, char** argv) {
     add_render(app, action);
     add_replay(app, action);
     add_info(app, action);
+    add_lint(app, action);
     add_convert(app, action);
     add_diff(app, action);
     if (argc <= 1) {

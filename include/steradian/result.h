@@ -52,6 +52,7 @@ struct Warning {
     std::string message;
     SourceLocation where;  ///< of the first occurrence
     uint64_t count = 1;
+    std::string rule = {};  ///< of the rule of lint (lint.h) that says the same; empty: none
 
     std::string str() const;
 };
@@ -59,7 +60,7 @@ struct Warning {
 class Diagnostics {
 public:
     /// Adds a warning; one with the same message as an earlier one only raises that one's count.
-    void warn(std::string message, SourceLocation where = {}, uint64_t count = 1);
+    void warn(std::string message, SourceLocation where = {}, uint64_t count = 1, std::string rule = {});
     void append(const Diagnostics& other);
     const std::vector<Warning>& warnings() const noexcept { return warnings_; }
     bool empty() const noexcept { return warnings_.empty(); }

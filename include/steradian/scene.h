@@ -2,6 +2,8 @@
 // A Scene can be built by hand, hashed, printed and sent. Lengths are metres, angles degrees, colours linear Rec. 709.
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -438,6 +440,16 @@ struct Scene {
     struct Names {
         std::vector<std::string> images, textures, materials, meshes, shapes, instances, lights, cameras, profiles;
     } names;
+};
+
+enum class ElementKind : uint8_t { image, texture, material, mesh, shape, instance, light, camera, profile };
+inline constexpr size_t kElementKinds = 9;
+
+/// One element of a scene: of which array, and its number there.
+struct Element {
+    ElementKind kind{};
+    uint32_t index = 0;
+    auto operator<=>(const Element&) const = default;
 };
 
 /// XXH3-128 of the scene's content as 32 hexadecimal digits. Names do not count.

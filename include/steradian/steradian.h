@@ -3,6 +3,7 @@
 
 #include "steradian/image.h"     // IWYU pragma: export
 #include "steradian/image_io.h"  // IWYU pragma: export
+#include "steradian/lint.h"      // IWYU pragma: export
 #include "steradian/load.h"      // IWYU pragma: export
 #include "steradian/render.h"    // IWYU pragma: export
 #include "steradian/replay.h"    // IWYU pragma: export

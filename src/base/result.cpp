@@ -62,17 +62,17 @@ std::string Warning::str() const {
     return out;
 }
 
-void Diagnostics::warn(std::string message, SourceLocation where, uint64_t count) {
+void Diagnostics::warn(std::string message, SourceLocation where, uint64_t count, std::string rule) {
     const auto same =
         std::find_if(warnings_.begin(), warnings_.end(), [&](const Warning& w) { return w.message == message; });
     if (same != warnings_.end())
         same->count += count;
     else
-        warnings_.push_back({std::move(message), std::move(where), count});
+        warnings_.push_back({std::move(message), std::move(where), count, std::move(rule)});
 }
 
 void Diagnostics::append(const Diagnostics& other) {
-    for (const Warning& w : other.warnings_) warn(w.message, w.where, w.count);
+    for (const Warning& w : other.warnings_) warn(w.message, w.where, w.count, w.rule);
 }
 
 }  // namespace steradian

@@ -1,5 +1,6 @@
 #include "formats/assets.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <system_error>
@@ -59,7 +60,37 @@ uint32_t add_named(std::vector<T>& pool, std::vector<std::string>& names, T elem
 
 void warn_about_reflectance(Diagnostics& diagnostics, Rgb reflectance, SourceLocation where) {
     if (max_component(reflectance) > 1)
-        diagnostics.warn("a reflectance above 1 adds energy: surfaces like this do not exist", std::move(where));
+        diagnostics.warn("a reflectance above 1 adds energy: surfaces like this do not exist", std::move(where), 1,
+                         "albedo-above-one");
+}
+
+SourceLocation SceneLocations::of(Element element) const {
+    const auto& list = places[static_cast<size_t>(element.kind)];
+    SourceLocation out = element.index < list.size() ? list[element.index] : SourceLocation{};
+    if (out.file.empty()) out.file = file;
+    return out;
+}
+
+void Assets::note_place(ElementKind kind, uint32_t index) {
+    if (!options_.locations || !here_) return;
+    auto& list = loaded_.locations.places[static_cast<size_t>(kind)];
+    list.resize(index);
+    list.push_back(*here_);
+}
+
+void Assets::locate(const json::Document& document, const json::Source& source) {
+    std::vector<SourceLocation*> places;
+    for (auto& list : loaded_.locations.places)
+        for (SourceLocation& place : list)
+            if (place.file.empty() && place.byte) places.push_back(&place);
+    std::stable_sort(places.begin(), places.end(), [](const auto* a, const auto* b) { return *a->byte < *b->byte; });
+    std::vector<size_t> offsets(places.size());
+    for (size_t i = 0; i < places.size(); ++i) {
+        offsets[i] = *places[i]->byte;
+        *places[i] = source.place(offsets[i]);
+        places[i]->file.clear();
+    }
+    document.each_pointer(offsets, [&](size_t i, const std::string& pointer) { places[i]->pointer = pointer; });
 }
 
 Status Assets::check_inside(const std::string& path) const {
@@ -101,8 +132,7 @@ Result<ImageId> Assets::open_image(const std::string& path) {
     auto texels = read_texels(path, options_.images);
     if (!texels) return std::move(texels).error();
     loaded_.files.push_back(path);
-    std::string name = path;
-    const auto id = ImageId(add_named(loaded_.scene.images, loaded_.scene.names.images, std::move(*texels), name));
+    const ImageId id = add_image(std::move(*texels), path);
     images_.emplace(key, id);
     return id;
 }
@@ -117,6 +147,7 @@ Result<ProfileId> Assets::profile(std::string_view named) {
     loaded_.files.push_back(*path);
     Scene& scene = loaded_.scene;
     const auto id = ProfileId(add_named(scene.profiles, scene.names.profiles, *std::move(profile), *path));
+    note_place(ElementKind::profile, index(id));
     profiles_.emplace(key, id);
     return id;
 }
@@ -140,6 +171,7 @@ Result<size_t> Assets::load_model(std::string_view named, std::optional<ColorSpa
     if (file->parts.empty()) loaded_.diagnostics.warn("the model has no faces", {*path, 0, 0, {}});
     Model model;
     for (MeshPart& part : file->parts) {
+        const Here here(*this, part.where.file.empty() ? SourceLocation{*path, 0, 0, {}} : part.where);
         const bool has_colors = !part.mesh.colors.empty();
         if (colors.value_or(file->color_space) == ColorSpace::srgb)
             for (Rgb& c : part.mesh.colors) c = {srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b)};
@@ -180,6 +212,7 @@ Result<InstanceRange> Assets::place(size_t model_number, const Placement& placem
 Result<MaterialId> Assets::file_material(Model& model, int number) {
     const auto i = static_cast<size_t>(number);
     if (!model.made[i]) {
+        const Here here(*this, model.materials[i].where);
         auto material = convert(model.materials[i]);
         if (!material) return material;
         model.made[i] = *material;
@@ -229,34 +262,42 @@ MaterialId Assets::add_diffuse(Rgb reflectance, bool two_sided, std::string name
 }
 
 ImageId Assets::add_image(RawImage image, std::string name) {
+    note_place(ElementKind::image, static_cast<uint32_t>(loaded_.scene.images.size()));
     return ImageId(add_named(loaded_.scene.images, loaded_.scene.names.images, std::move(image), name));
 }
 
 TextureId Assets::add_texture(Texture texture, std::string name) {
+    note_place(ElementKind::texture, static_cast<uint32_t>(loaded_.scene.textures.size()));
     return TextureId(add_named(loaded_.scene.textures, loaded_.scene.names.textures, std::move(texture), name));
 }
 
 MaterialId Assets::add_material(Material material, std::string name) {
+    note_place(ElementKind::material, static_cast<uint32_t>(loaded_.scene.materials.size()));
     return MaterialId(add_named(loaded_.scene.materials, loaded_.scene.names.materials, std::move(material), name));
 }
 
 ShapeId Assets::add_shape(Shape shape, std::string name) {
+    note_place(ElementKind::shape, static_cast<uint32_t>(loaded_.scene.shapes.size()));
     return ShapeId(add_named(loaded_.scene.shapes, loaded_.scene.names.shapes, std::move(shape), name));
 }
 
 MeshId Assets::add_mesh(Mesh mesh, std::string name) {
+    note_place(ElementKind::mesh, static_cast<uint32_t>(loaded_.scene.meshes.size()));
     return MeshId(add_named(loaded_.scene.meshes, loaded_.scene.names.meshes, std::move(mesh), name));
 }
 
 InstanceId Assets::add_instance(Instance instance, std::string name) {
+    note_place(ElementKind::instance, static_cast<uint32_t>(loaded_.scene.instances.size()));
     return InstanceId(add_named(loaded_.scene.instances, loaded_.scene.names.instances, std::move(instance), name));
 }
 
 void Assets::add_light(Light light, std::string name) {
+    note_place(ElementKind::light, static_cast<uint32_t>(loaded_.scene.lights.size()));
     add_named(loaded_.scene.lights, loaded_.scene.names.lights, std::move(light), name);
 }
 
 void Assets::add_camera(Camera camera, std::string name) {
+    note_place(ElementKind::camera, static_cast<uint32_t>(loaded_.scene.cameras.size()));
     loaded_.scene.names.cameras.push_back(std::move(name));  // always: they are chosen by it, even by an empty one
     loaded_.scene.cameras.push_back(std::move(camera));
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/json/reader.h"
 #include "formats/mesh_file.h"
 #include "steradian/load.h"
 
@@ -50,6 +51,25 @@ public:
     Assets(LoadedScene& loaded, std::string base_folder, const LoadOptions& options)
         : loaded_(loaded), base_folder_(std::move(base_folder)), options_(options) {}
 
+    /// While it lives, what is added stands at one place: a byte of the JSON text, whose line and pointer are found
+    /// once all is there (locate), or a place in another file.
+    class Here {
+    public:
+        Here(Assets& assets, size_t offset) : Here(assets, SourceLocation{{}, 0, 0, offset, {}}) {}
+        Here(Assets& assets, SourceLocation place) : here_(assets.here_), before_(std::move(here_)) {
+            here_ = std::move(place);
+        }
+        ~Here() { here_ = std::move(before_); }
+        Here(const Here&) = delete;
+        Here& operator=(const Here&) = delete;
+
+    private:
+        std::optional<SourceLocation>& here_;
+        std::optional<SourceLocation> before_;
+    };
+    /// Lines, columns and pointers of what has been added at bytes of this text.
+    void locate(const json::Document& document, const json::Source& source);
+
     /// A named file as a path to open: relative ones against the base folder. Refuses network addresses always, and
     /// paths out of the base folder (absolute, through "..", through symbolic links) where the options say so.
     Result<std::string> resolve(std::string_view named) const;
@@ -86,6 +106,7 @@ private:
     Result<MaterialId> convert(const MeshMaterial& from);
     Result<ImageId> open_image(const std::string& path);
     Status check_inside(const std::string& path) const;
+    void note_place(ElementKind kind, uint32_t index);
 
     LoadedScene& loaded_;
     std::string base_folder_;
@@ -95,6 +116,7 @@ private:
     std::map<std::string, size_t> model_index_;
     std::vector<Model> models_;
     std::optional<MaterialId> neutral_, black_, painted_;
+    std::optional<SourceLocation> here_;
 };
 
 }  // namespace steradian

@@ -44,7 +44,8 @@ Result<LoadedScene> read_json(std::string_view text, const std::string& name, co
                               const LoadOptions& options) {
     auto document = json::Document::parse(text, name, options.max_depth);
     if (!document) return std::move(document).error();
-    const json::Source source(document->text(), name);
+    const json::Source source =
+        options.locations ? json::Source(*document, name, std::nullopt) : json::Source(document->text(), name);
     if (const auto duplicate = document->duplicate_key())
         source.fail(duplicate->second_offset,
                     "the key " + json::quoted(duplicate->key) + " stands here for the second time",
@@ -62,6 +63,8 @@ Result<LoadedScene> read_json(std::string_view text, const std::string& name, co
         scene_json::load_course(context, root);
     else
         source.fail(root.offset(), "missing key 'version' in the scene", "begin with {\"version\": 1, …");
+    loaded.locations.file = name;
+    assets.locate(*document, source);
     return loaded;
 }
 
@@ -206,6 +209,7 @@ Result<LoadedScene> load_scene(const std::string& path, const LoadOptions& optio
                     return about_file(path, ErrorCode::usage, "scenes of this format have no animations",
                                       "those of glTF files (.gltf, .glb) may have");
                 auto loaded = format.load(path, options);
+                if (loaded) loaded->locations.file = path;
                 if (loaded)
                     if (Status status = apply_environment(*loaded, options); !status) return std::move(status).error();
                 return loaded;

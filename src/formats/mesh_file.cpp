@@ -8,11 +8,11 @@
 
 namespace steradian {
 
-void note_dropped(MeshFile& file, const std::string& name, uint64_t faces) {
+void note_dropped(MeshFile& file, SourceLocation where, uint64_t faces) {
     file.dropped_faces = faces;
     if (faces)
         file.diagnostics.warn("faces with coordinates that are not finite or beyond 1e15 were dropped",
-                              {name, 0, 0, {}}, faces);
+                              std::move(where), faces, "nan-vertices");
 }
 
 Result<MeshFile> load_mesh_file(const std::string& path, const LoadOptions& options) {

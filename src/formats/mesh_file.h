@@ -30,8 +30,9 @@ struct MeshMaterial {
 /// The faces that share one material.
 struct MeshPart {
     Mesh mesh;
-    int material = -1;  ///< index into MeshFile::materials, -1: none given
-    std::string name;   ///< the material's as the file has it, defined or not; else that of the object or group
+    int material = -1;          ///< index into MeshFile::materials, -1: none given
+    std::string name;           ///< the material's as the file has it, defined or not; else that of the object or group
+    SourceLocation where = {};  ///< of its first face or the name of its material; a file alone: somewhere in it
 };
 
 struct MeshFile {
@@ -43,8 +44,8 @@ struct MeshFile {
     uint64_t dropped_faces = 0;                 ///< whose coordinates are not usable (see usable_position)
 };
 
-/// Counts faces as dropped and warns about them; nothing when there are none.
-void note_dropped(MeshFile& file, const std::string& name, uint64_t faces);
+/// Counts faces as dropped and warns about them; nothing when there are none. `where`: the first of their vertices.
+void note_dropped(MeshFile& file, SourceLocation where, uint64_t faces);
 
 /// By extension, .obj or .ply. UVs are flipped to Steradian's convention (v downwards).
 Result<MeshFile> load_mesh_file(const std::string& path, const LoadOptions& options = {});

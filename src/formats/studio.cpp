@@ -136,6 +136,7 @@ PerspectiveCamera frame(const Scene& scene, const Extent& extent, const ViewAxes
         high = {max_of(high.x, x + slope * z), max_of(high.y, y + slope * z), max_of(high.z, z)};
         low = {max_of(low.x, -x + slope * z), max_of(low.y, -y + slope * z), 0};
     });
+    if (!(high.z > -kInfinity)) high = low = {extent.radius, extent.radius, extent.radius};
     const double tight = max_of(high.x + low.x, high.y + low.y) / (2 * slope);
     const double distance = max_of(tight, high.z + extent.radius);
     const Vec3d middle = extent.center + axes.right * ((high.x - low.x) * 0.5) + axes.up * ((high.y - low.y) * 0.5);

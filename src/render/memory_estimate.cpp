@@ -50,7 +50,7 @@ uint64_t bytes_of(const std::vector<T>& v) {
 uint64_t name_bytes(const Scene::Names& names) {
     uint64_t bytes = 0;
     for (const auto* list : {&names.images, &names.textures, &names.materials, &names.meshes, &names.shapes,
-                             &names.instances, &names.lights, &names.cameras})
+                             &names.instances, &names.lights, &names.cameras, &names.profiles})
         bytes += bytes_of(*list);
     return bytes;
 }
@@ -60,11 +60,7 @@ uint64_t scene_bytes(const Scene& scene) {
                      bytes_of(scene.reliefs) + bytes_of(scene.meshes) + bytes_of(scene.shapes) +
                      bytes_of(scene.instances) + bytes_of(scene.lights) + bytes_of(scene.cameras) +
                      name_bytes(scene.names);
-    for (const Mesh& m : scene.meshes) {
-        bytes += bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices);
-        bytes += bytes_of(m.colors) + bytes_of(m.alphas) + bytes_of(m.tangents) + bytes_of(m.more_uvs);
-        for (const std::vector<Vec2>& uvs : m.more_uvs) bytes += bytes_of(uvs);
-    }
+    for (const Mesh& m : scene.meshes) bytes += mesh_bytes(m);
     for (const RawImage& image : scene.images) bytes += image.data.size();
     return bytes;
 }
@@ -101,6 +97,13 @@ uint64_t mip_map_bytes(const Scene& scene) {
 }
 
 }  // namespace
+
+uint64_t mesh_bytes(const Mesh& m) {
+    uint64_t bytes = bytes_of(m.positions) + bytes_of(m.normals) + bytes_of(m.uvs) + bytes_of(m.indices) +
+                     bytes_of(m.colors) + bytes_of(m.alphas) + bytes_of(m.tangents) + bytes_of(m.more_uvs);
+    for (const std::vector<Vec2>& uvs : m.more_uvs) bytes += bytes_of(uvs);
+    return bytes;
+}
 
 MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& settings, const Execution& execution) {
     uint64_t triangles = 0, shapes = 0;

@@ -21,6 +21,9 @@ inline uint32_t largest_tile(const RenderSettings& s, const Execution& e) {
 
 inline uint32_t workers_of(const Execution& e) { return e.threads ? e.threads : hardware_threads(); }
 
+/// What the arrays of a mesh hold.
+uint64_t mesh_bytes(const Mesh& mesh);
+
 /// Of valid settings: the sums, the picture that is made of them and what the threads work in.
 uint64_t picture_bytes(const RenderSettings& settings, const Execution& execution);
 

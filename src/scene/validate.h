@@ -9,7 +9,9 @@ namespace steradian {
 
 /// Every id refers to something, every number is finite and in its documented range, index counts fit, at most one
 /// environment, one area light per instance. The first fault is named (by the element's name where it has one).
-Status validate(const Scene& scene);
+/// `any`: vertices may be where sanitize would not leave them.
+enum class MeshNumbers : uint8_t { sanitized, any };
+Status validate(const Scene& scene, MeshNumbers numbers = MeshNumbers::sanitized);
 
 /// What can be known of settings without their scene: sizes, crop, samples, depth and filter are in their documented
 /// ranges. Codes: usage, or resources for a picture beyond kMaxResolution or kMaxPixels.

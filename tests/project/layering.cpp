@@ -22,14 +22,15 @@ const std::map<std::string, std::set<std::string>> kMayUse = {
     {"shading", {"scene", "image", "math", "base"}},
     {"render", {"shading", "scene", "image", "accel", "math", "base"}},
     {"formats", {"scene", "image", "math", "base"}},
-    {"apps", {"base", "math", "image", "scene", "accel", "shading", "render", "formats"}},
+    {"lint", {"formats", "shading", "scene", "image", "math", "base"}},
+    {"apps", {"base", "math", "image", "scene", "accel", "shading", "render", "formats", "lint"}},
 };
 
 /// The layer that implements each public header. Settings are plain values that every layer may name.
 const std::map<std::string, std::string> kPublicHeaders = {
-    {"version.h", "base"},  {"result.h", "base"},    {"settings.h", "base"},  {"vec.h", "math"},
-    {"image.h", "image"},   {"image_io.h", "image"}, {"scene.h", "scene"},    {"load.h", "formats"},
-    {"render.h", "render"}, {"replay.h", "render"},  {"steradian.h", "apps"},
+    {"version.h", "base"},  {"result.h", "base"},    {"settings.h", "base"}, {"vec.h", "math"},
+    {"image.h", "image"},   {"image_io.h", "image"}, {"scene.h", "scene"},   {"load.h", "formats"},
+    {"render.h", "render"}, {"replay.h", "render"},  {"lint.h", "lint"},     {"steradian.h", "apps"},
 };
 
 bool is_source(const fs::path& path) {

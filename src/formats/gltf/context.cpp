@@ -111,12 +111,13 @@ void Budget::take_unread(uint64_t bytes, const Source& source, size_t offset) {
     take(bytes, source, offset);
 }
 
-void Context::say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset) {
+void Context::say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset,
+                  std::string rule) {
     const bool known = said.contains(message);
     if (!known && said.size() >= kMaxDifferent) message = "and others of which there are too many to list";
     // The place is that of the first one; to find the pointer of each would take long in a large file.
     const bool first = said.insert(message).second;
-    list.warn(std::move(message), first ? source.where(offset) : SourceLocation{});
+    list.warn(std::move(message), first ? source.where(offset) : SourceLocation{}, 1, std::move(rule));
 }
 
 void check_extensions(Context& context, const Object& root) {

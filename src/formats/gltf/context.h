@@ -72,18 +72,22 @@ public:
     Budget budget{options.gltf_free_bytes};
 
     /// Something in the file is not as it should be, and the picture can be made nevertheless.
-    void warn(std::string message, size_t offset) { say(loaded.diagnostics, warned_, std::move(message), offset); }
+    void warn(std::string message, size_t offset, std::string rule = {}) {
+        say(loaded.diagnostics, warned_, std::move(message), offset, std::move(rule));
+    }
     /// Something that the file says is left out or only come near to.
     void not_honoured(std::string message, size_t offset) {
         say(loaded.fidelity, reported_, std::move(message), offset);
     }
+    /// Nothing refers to it.
+    void unused(std::string message, size_t offset) { say(loaded.unused, unused_, std::move(message), offset); }
 
 private:
     /// A hostile file can make any number of different messages: so many are kept.
     static constexpr size_t kMaxDifferent = 100;
-    void say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset);
+    void say(Diagnostics& list, std::set<std::string>& said, std::string message, size_t offset, std::string rule = {});
 
-    std::set<std::string> warned_, reported_;
+    std::set<std::string> warned_, reported_, unused_;
 };
 
 /// What to do about a well-known extension that we do not have, for hints.

@@ -3,6 +3,7 @@
 #include "formats/gltf/animation.h"
 #include "formats/gltf/container.h"
 #include "formats/gltf/nodes.h"
+#include "formats/gltf/unused.h"
 #include "formats/studio.h"
 
 namespace steradian::gltf {
@@ -45,6 +46,18 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     Meshes meshes(context, accessors, materials);
     place_nodes(context, accessors, meshes, read_pose(context, accessors), root);
     images.decode();
+    if (options.locations) {
+        find_unused(context);
+        // What the reader has made for nothing, such as the alpha of a material that is opaque, is not the file's.
+        const Scene& scene = loaded.scene;
+        const auto consume = [&](ElementKind kind, size_t count) {
+            for (uint32_t i = 0; i < count; ++i) loaded.locations.consumed.push_back({kind, i});
+        };
+        consume(ElementKind::image, scene.images.size()), consume(ElementKind::texture, scene.textures.size());
+        consume(ElementKind::material, scene.materials.size());
+        consume(ElementKind::mesh, scene.meshes.size()), consume(ElementKind::shape, scene.shapes.size());
+    }
+    assets.locate(document, source);
     const bool sky_to_see = options.environment.replace.has_value();
     if (loaded.scene.instances.empty() && !sky_to_see) context.warn("the scene has nothing to render", root.offset());
     if (lookup_steps) *lookup_steps = source.lookup_steps();

@@ -92,6 +92,7 @@ TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) 
     out.uv_set = use.uv_set;
     out.image = plane_of(opened.image, plane);
     context_.budget.take(sizeof(Texture) + opened.name.size(), context_.source, use.offset);
+    const Assets::Here here(context_.assets, context_.tables.textures.elements[use.texture].offset());
     const TextureId id = context_.assets.add_texture(out, opened.name);
     return textures_.emplace(key, id).first->second;
 }
@@ -125,6 +126,7 @@ ImageId Images::plane_of(uint32_t number, Plane plane) {
     if (found == images_.end()) found = images_.emplace(number, open(number)).first;
     Image& image = found->second;
     auto& id = image.planes[static_cast<size_t>(plane)];
+    const Assets::Here here(context_.assets, image.offset);
     if (!id) id = context_.assets.add_image({}, image.name);
     return *id;
 }

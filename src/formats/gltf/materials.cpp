@@ -19,7 +19,7 @@ float Materials::factor(double x, const Object& object, std::string_view key, do
     if (!(x >= 0 && x <= most))
         context_.warn(quoted(key) + " of a material must " + (most > 1 ? "not be negative" : "be between 0 and 1") +
                           " and was clamped",
-                      object.offset_of(key));
+                      object.offset_of(key), "out-of-range");
     return static_cast<float>(clamp_to(x, 0.0, most));
 }
 
@@ -197,6 +197,7 @@ Look Materials::finish(const Reading& r, const std::string& name) {
 }
 
 Look Materials::read(const Object& material, VertexColors colors, const std::string& name) {
+    const Assets::Here here(context_.assets, material.offset());
     Reading r = start(colors);
     read_metallic_roughness(material, r);
     if (colors != VertexColors::none) multiply_by_vertices(r.surface.base_color.texture, false);

@@ -115,7 +115,8 @@ void Meshes::read_colors(const Object& primitive, const Key& key, Mesh& mesh) {
     for (Rgb& c : mesh.colors) unit(c.r), unit(c.g), unit(c.b);
     if (components == 4) mesh.alphas = accessors_.read_component(colors, 3);
     for (float& a : mesh.alphas) unit(a);
-    if (clamped) context_.warn("colours of vertices must be between 0 and 1 and were clamped", colors.offset);
+    if (clamped)
+        context_.warn("colours of vertices must be between 0 and 1 and were clamped", colors.offset, "out-of-range");
 }
 
 /// MikkTSpace, of the vertices as they are rendered.
@@ -213,6 +214,7 @@ std::optional<Meshes::Part> Meshes::part(const Object& primitive, const Look& lo
     auto known = shapes_.find(key);
     if (known == shapes_.end()) {
         std::optional<ShapeId> made;
+        const Assets::Here here(context_.assets, primitive.offset());
         if (auto mesh = read(primitive, key, deformation.joints)) {
             context_.budget.take(sizeof(Mesh) + sizeof(Shape) + 2 * name.size(), context_.source, primitive.offset());
             const MeshId id = context_.assets.add_mesh(std::move(*mesh), name);

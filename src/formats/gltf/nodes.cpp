@@ -136,6 +136,7 @@ private:
     void fill(uint32_t number) {
         const Object node(context_.source, context_.tables.nodes.elements[number], "a node");
         const Affine& world_from_node = *world_from_node_[number];
+        const Assets::Here here(context_.assets, node.offset());
         const std::string name(node.string_or("name", ""));
         if (const auto mesh = node.reference("mesh", context_.tables.meshes))
             place_mesh(node, *mesh, world_from_node, name, deformation(node, *mesh, pose_of(number)));

@@ -237,6 +237,16 @@ Result<Document> Document::parse(std::string_view text, const std::string& name,
     return document;
 }
 
+namespace {
+
+/// RFC 6901, section 3.
+void append_token(std::string& pointer, std::string_view token) {
+    pointer += '/';
+    for (const char c : token) c == '~' ? pointer += "~0" : c == '/' ? pointer += "~1" : pointer += c;
+}
+
+}  // namespace
+
 std::string Document::pointer(size_t offset) const {
     std::string out;
     Value value = root();
@@ -259,9 +269,37 @@ std::string Document::pointer(size_t offset) const {
             }
         }
         if (!inside || offset == value.offset()) return out;
-        out += '/';
-        for (const char c : token) c == '~' ? out += "~0" : c == '/' ? out += "~1" : out += c;
+        append_token(out, token);
         value = *inside;
+    }
+}
+
+void Document::each_pointer(std::span<const size_t> offsets,
+                            const std::function<void(size_t, const std::string&)>& visit) const {
+    struct Level {
+        uint32_t end;       ///< the node behind its last child
+        bool object;        ///< its children have keys
+        size_t next = 0;    ///< number of the next element of an array
+        size_t path_bytes;  ///< of its own pointer
+    };
+    std::string path;
+    std::vector<Level> open;
+    size_t number = 0;
+    for (uint32_t i = 0; i < nodes_.size() && number < offsets.size(); ++i) {
+        while (!open.empty() && i == open.back().end) open.pop_back();
+        if (!open.empty()) {
+            Level& level = open.back();
+            path.resize(level.path_bytes);
+            if (level.object)
+                append_token(path, Value(*this, i++).string());
+            else
+                append_token(path, std::to_string(level.next++));
+        }
+        const Node& node = nodes_[i];
+        for (; number < offsets.size() && offsets[number] <= node.offset; ++number)
+            if (offsets[number] == node.offset) visit(number, path);
+        if (node.kind == Kind::array || node.kind == Kind::object)
+            open.push_back({static_cast<uint32_t>(node.payload), node.kind == Kind::object, 0, path.size()});
     }
 }
 

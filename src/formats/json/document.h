@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,6 +121,10 @@ public:
     /// The JSON pointer (RFC 6901) of the innermost value that a byte of the text is part of; a key belongs to its
     /// value. "" is the root. Takes time in proportion to the sizes of the containers on the way.
     std::string pointer(size_t offset) const;
+    /// Calls `visit` with the pointer of each value that begins at one of `offsets`, which ascend, in their order;
+    /// takes one walk through the document.
+    void each_pointer(std::span<const size_t> offsets,
+                      const std::function<void(size_t number, const std::string& pointer)>& visit) const;
 
     struct Duplicate {
         std::string_view key;

@@ -55,8 +55,13 @@ std::string describe(Value value) {
 }
 
 SourceLocation Source::where(size_t offset) const {
-    const std::string pointer = pointers_ ? pointers_->pointer(offset) : std::string();
-    if (begin_) return {name_, 0, 0, *begin_ + offset, pointer};
+    SourceLocation out = place(offset);
+    if (pointers_) out.pointer = pointers_->pointer(offset);
+    return out;
+}
+
+SourceLocation Source::place(size_t offset) const {
+    if (begin_) return {name_, 0, 0, *begin_ + offset, {}};
     if (line_starts_.empty()) {
         line_starts_.push_back(0);
         for (size_t i = 0; i < text_.size(); ++i) {
@@ -69,7 +74,7 @@ SourceLocation Source::where(size_t offset) const {
             static_cast<uint32_t>(line - line_starts_.begin() + 1),
             static_cast<uint32_t>(offset - *line + 1),
             {},
-            pointer};
+            {}};
 }
 
 Error Source::error(size_t offset, std::string message, std::string hint, ErrorCode code) const {

@@ -29,6 +29,8 @@ public:
     const std::string& name() const noexcept { return name_; }
     /// Fast enough to be asked for every element of a large file.
     SourceLocation where(size_t offset) const;
+    /// The same without a pointer, which takes long to find in a large file.
+    SourceLocation place(size_t offset) const;
     [[noreturn]] void fail(size_t offset, std::string message, std::string hint = {},
                            ErrorCode code = ErrorCode::bad_input) const;
     /// Passes the value on; an error about a file as a whole ("no such file") is moved to the place that named the

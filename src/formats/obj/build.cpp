@@ -1,5 +1,6 @@
 #include "formats/obj/build.h"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -176,12 +177,14 @@ std::vector<FaceList> sort_faces(const Records& records, BuildCounts& counts) {
         for (const uint32_t size : run.sizes) {
             const Face face{corners, size, run.state.smoothing.value_or(0)};
             corners += size;
-            bool finite = true;
-            for (const Corner& corner : face.all()) finite &= usable_position(position_of(records, corner));
-            if (finite)
+            const auto corners_of_face = face.all();
+            const auto bad = std::find_if(corners_of_face.begin(), corners_of_face.end(), [&](const Corner& corner) {
+                return !usable_position(position_of(records, corner));
+            });
+            if (bad == corners_of_face.end())
                 faces.push_back(face);
-            else
-                ++counts.not_finite;
+            else if (counts.not_finite++ == 0)
+                counts.first_not_finite = bad->position;
         }
     }
     std::erase_if(lists, [](const FaceList& list) { return list.faces.empty(); });

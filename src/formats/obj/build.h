@@ -30,8 +30,9 @@ struct FaceList {
 
 /// What the lists leave out or had to bend.
 struct BuildCounts {
-    uint64_t not_finite = 0;  ///< faces dropped because a coordinate is not usable (see usable_position)
-    uint64_t fans = 0;        ///< polygons that cross themselves or are too intricate, cut as fans
+    uint64_t not_finite = 0;       ///< faces dropped because a coordinate is not usable (see usable_position)
+    int32_t first_not_finite = 0;  ///< the first such position of the first of them
+    uint64_t fans = 0;             ///< polygons that cross themselves or are too intricate, cut as fans
 };
 
 /// Faces by material, in the order of their first use; those that use a position that is not usable are dropped.

@@ -1,4 +1,5 @@
 // Wavefront OBJ: text to records, records to meshes, and the materials that they use.
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -156,6 +157,42 @@ private:
     size_t undefined_ = 0;
 };
 
+/// The line of the position with this number, from 0.
+SourceLocation place_of_vertex(std::string_view text, const std::string& name, uint64_t number) {
+    SourceLocation out{name, 0, 0, {}};
+    uint32_t line = 1;
+    for (size_t at = 0; at < text.size(); ++line) {
+        const size_t word = std::min(text.find_first_not_of(" \t", at), text.size());
+        const std::string_view record = text.substr(word, 2);
+        if ((record == "v " || record == "v\t") && number-- == 0) return {name, line, 0, {}};
+        const size_t end = text.find('\n', word);
+        at = end == text.npos ? text.size() : end + 1;
+    }
+    return out;
+}
+
+/// Lines of words of the text that come in its order, in one walk.
+class LineCounter {
+public:
+    LineCounter(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+    /// The file alone for a word that is not part of the text or comes before an earlier one.
+    SourceLocation place(std::string_view word) {
+        const size_t to = word.empty() ? 0 : static_cast<size_t>(word.data() - text_.data());
+        if (word.empty() || to < at_) return {name_, 0, 0, {}};
+        line_ += static_cast<uint32_t>(
+            std::count(text_.begin() + std::ptrdiff_t(at_), text_.begin() + std::ptrdiff_t(to), '\n'));
+        at_ = to;
+        return {name_, line_, 0, {}};
+    }
+
+private:
+    std::string_view text_;
+    const std::string& name_;
+    size_t at_ = 0;
+    uint32_t line_ = 1;
+};
+
 MeshFile read_obj(std::string_view text, const std::string& name, const std::string& folder, const LoadOptions& options,
                   std::optional<Error>& error) {
     const obj::Records records = obj::read_records(text);
@@ -171,15 +208,19 @@ MeshFile read_obj(std::string_view text, const std::string& name, const std::str
         return file;
     }
     std::vector<Mesh> meshes = obj::build_meshes(records, lists, counts);
+    LineCounter lines(text, name);
     for (size_t i = 0; i < lists.size(); ++i) {
         const obj::FaceList& list = lists[i];
         const int material = list.has_material ? materials.find(list) : -1;
         file.parts.push_back(
             {std::move(meshes[i]), material, std::string(list.has_material ? list.material : list.group)});
+        if (options.locations) file.parts.back().where = lines.place(list.has_material ? list.material : list.group);
     }
     file.materials = std::move(materials.used);
     file.libraries = std::move(materials.read);
-    note_dropped(file, name, counts.not_finite);
+    note_dropped(file,
+                 counts.not_finite ? place_of_vertex(text, name, uint64_t(counts.first_not_finite)) : SourceLocation{},
+                 counts.not_finite);
     if (counts.fans)
         file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
                               counts.fans);

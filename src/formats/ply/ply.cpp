@@ -387,7 +387,7 @@ MeshFile read_ply(std::string_view data, const std::string& name, const Header& 
         file.diagnostics.warn("faces of fewer than three corners ignored",
                               location_of(data, name, text, contents.too_small_at), contents.too_small);
     const BuildCounts counts = triangulate(contents);
-    note_dropped(file, name, counts.not_finite);
+    note_dropped(file, {name, 0, 0, {}}, counts.not_finite);
     if (counts.fans)
         file.diagnostics.warn("polygons that cross themselves were cut into triangles as fans", {name, 0, 0, {}},
                               counts.fans);

@@ -95,6 +95,7 @@ void CourseLoader::load(Value root) {
 
 void CourseLoader::read_integrator(Value value) {
     RenderSettings& settings = context_.loaded.settings;
+    const Assets::Here here(assets_, value.offset());
     ObjectReader reader(source_, value, {"integrator", kIntegratorKeys}, "'integrator'");
     const Value type = reader.require("type");
     const bool point_light = json::read_choice(source_, type, "the type of the integrator", kIntegratorTypes) == 0;
@@ -130,6 +131,7 @@ void CourseLoader::read_film(Value value) {
 }
 
 void CourseLoader::read_camera(Value value) {
+    const Assets::Here here(assets_, value.offset());
     ObjectReader reader(source_, value, {"camera", kCameraKeys}, "'camera'");
     PerspectiveCamera camera;
     camera.position = reader.vec3("position");
@@ -159,6 +161,7 @@ void read_generator(ObjectReader& reader, T& texture) {
 }
 
 TextureId CourseLoader::read_texture(Value value, const std::string& name) {
+    const Assets::Here here(assets_, value.offset());
     const std::string what = "texture " + quoted(name);
     const size_t type = read_type(source_, value, what, kTextureTypes);
     ObjectReader reader(source_, value, kTextureKinds[type], what);
@@ -207,12 +210,14 @@ ConductorMaterial CourseLoader::read_conductor(ObjectReader& reader, const std::
         const auto* constant = std::get_if<ConstantTexture>(&context_.loaded.scene.textures[index(id)]);
         if (!constant) source_.fail(texture->offset(), "the texture of a rough conductor must be constant");
         out.tint = constant->value;
+        context_.loaded.locations.consumed.push_back({ElementKind::texture, index(id)});
     }
     context_.warn_about_reflectance(out.tint, reader.offset());
     return out;
 }
 
 MaterialId CourseLoader::read_material(Value value, const std::string& name) {
+    const Assets::Here here(assets_, value.offset());
     const std::string what = "material " + quoted(name);
     const size_t type = read_type(source_, value, what, kMaterialTypesOfCourse);
     ObjectReader reader(source_, value, kMaterialKinds[type], what);
@@ -259,6 +264,7 @@ Affine read_placement(ObjectReader& reader) {
 }
 
 void CourseLoader::read_object(Value value) {
+    const Assets::Here here(assets_, value.offset());
     const size_t type = read_type(source_, value, "an object", kObjectTypesOfCourse);
     ObjectReader reader(source_, value, kObjectKinds[type], "this " + std::string(kObjectTypesOfCourse[type]));
     reader.require("type");
@@ -313,9 +319,11 @@ float rotation_about_y(const Source& source, Value value) {
 }
 
 void CourseLoader::read_environment(Value value) {
+    const Assets::Here here(assets_, value.offset());
     ObjectReader reader(source_, value, {"environment_map", kEnvironmentKeys}, "'environment_map'");
     const Value name = reader.require("texture_name");
     const TextureId id = textures_.get(source_, json::read_string(source_, name, "'texture_name'"), name.offset());
+    context_.loaded.locations.consumed.push_back({ElementKind::texture, index(id)});
     EnvironmentLight light;
     light.radiance = reader.color_or("scale", {1, 1, 1}, Range{0, 1e8});
     if (const auto transform = reader.find("transform")) light.rotation = rotation_about_y(source_, *transform);

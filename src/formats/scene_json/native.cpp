@@ -128,6 +128,7 @@ size_t camera_type(const Source& source, Value camera) {
 }  // namespace
 
 void NativeLoader::read_camera(Value value, std::string name) {
+    const Assets::Here here(assets_, value.offset());
     const size_t type = camera_type(source_, value);
     ObjectReader reader(source_, value, kCameraSpecs[type], "the camera");
     reader.find("type");

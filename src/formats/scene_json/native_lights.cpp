@@ -37,6 +37,7 @@ double square(double x) { return x * x; }
 void NativeLoader::read_lights(Value value) {
     json::expect_array(source_, value, "'lights'");
     for (const Value light : value.elements()) {
+        const Assets::Here here(assets_, light.offset());
         switch (read_type(source_, light, "a light", kLightTypes)) {
             case 0:
                 read_point_light(light);

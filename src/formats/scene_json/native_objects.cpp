@@ -59,6 +59,7 @@ void NativeLoader::read_shapes(Value value) {
         source_.fail(value.offset(),
                      "'shapes' must be an object with a shape for each name, got " + json::describe(value));
     for (const Member member : value.members()) {
+        const Assets::Here here(assets_, member.value.offset());
         const std::string name(member.key), what = "shape " + quoted(name);
         const size_t type = read_type(source_, member.value, what, kShapeTypes);
         ObjectReader reader(source_, member.value, kShapeSpecs[type], what);
@@ -172,6 +173,7 @@ void NativeLoader::make_emitters(InstanceRange range, const Emission& emission, 
 }
 
 void NativeLoader::read_object(Value value) {
+    const Assets::Here here(assets_, value.offset());
     const size_t type = read_type(source_, value, "an object", kObjectTypes);
     ObjectReader reader(source_, value, kObjectSpecs[type], "this " + std::string(kObjectTypes[type]));
     reader.require("type");

@@ -49,6 +49,7 @@ void NativeLoader::read_textures(Value value) {
 }
 
 TextureId NativeLoader::read_texture(Value value, const std::string& name, bool numbers) {
+    const Assets::Here here(assets_, value.offset());
     const std::string what = with_name("texture", name);
     const size_t type = read_type(source_, value, what, kTextureTypes);
     if (type == 1) return read_image_texture(value, name, numbers);
@@ -116,6 +117,7 @@ TextureId NativeLoader::read_reflectance(ObjectReader& material, std::string_vie
                                          json::describe(value));
     const Rgb color = json::read_color(source_, value, quoted(key), json::kReflectance);
     context_.warn_about_reflectance(color, value.offset());
+    const Assets::Here here(assets_, value.offset());
     return assets_.add_texture(ConstantTexture{color}, "");
 }
 
@@ -175,6 +177,7 @@ void NativeLoader::read_materials(Value value) {
 }
 
 MaterialId NativeLoader::read_material(Value value, const std::string& name) {
+    const Assets::Here here(assets_, value.offset());
     const std::string what = with_name("material", name);
     const size_t type = read_type(source_, value, what, kMaterialTypes);
     ObjectReader reader(source_, value, kMaterialSpecs[type], what);

@@ -1,0 +1,12 @@
+// What a glTF file has and nothing in it refers to.
+#pragma once
+
+#include "formats/gltf/context.h"
+
+namespace steradian::gltf {
+
+/// Names cameras, images, lights, materials, meshes, nodes, skins and textures that no other element refers to, and
+/// nodes that are in no scene. Believes nothing: what is not as it should be refers to nothing.
+void find_unused(Context& context);
+
+}  // namespace steradian::gltf

@@ -1,0 +1,96 @@
+// steradian lint: what it prints, its exit codes and options; and what info says of the same.
+#include <gtest/gtest.h>
+
+#include "program.h"
+
+namespace steradian::test {
+namespace {
+
+constexpr const char* kMistakes = R"({"version": 1,
+"camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
+"materials": {"spare": {"type": "mirror"}},
+"objects": [{"type": "sphere", "material": {"type": "glass", "eta": 1}}],
+"lights": [{"type": "environment", "radiance": 1}]})";
+
+class LintCommand : public CommandTest {
+protected:
+    LintCommand() { spit(folder_.file("bad.json"), kMistakes); }
+};
+
+TEST_F(LintCommand, PrintsALineForEachFinding) {
+    const Outcome o = steradian({"lint", "bad.json"});
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(o.err, "");
+    EXPECT_EQ(o.out,
+              "bad.json:3:24 (/materials/spare): note: material 'spare' is not used [unused]\n"
+              "bad.json:4:44 (/objects/0/material): warning: material 1 has an index of refraction of 1: it neither "
+              "bends nor reflects light [ior-one]\n"
+              "  hint: glass has 1.5, water 1.33\n"
+              "bad.json: 1 warning, 1 note\n");
+    expect_files({"bad.json"});
+}
+
+TEST_F(LintCommand, StrictFailsForWarningsThatAreNotDisabled) {
+    EXPECT_EQ(steradian({"lint", "bad.json", "--strict"}).code, 1);
+    EXPECT_EQ(steradian({"lint", "bad.json", "--strict", "--json"}).code, 1);
+    EXPECT_EQ(steradian({"lint", "bad.json", "--strict", "--disable", "ior-one"}).code, 0) << "a note is left";
+    EXPECT_EQ(steradian({"lint", "bad.json", "--disable", "ior-one,unused"}).out, "bad.json: 0 warnings, 0 notes\n");
+    EXPECT_EQ(steradian({"lint", "bad.json", "--disable", "ior-one", "--disable", "unused"}).out,
+              "bad.json: 0 warnings, 0 notes\n");
+    EXPECT_EQ(steradian({"lint", "scene.json", "--strict"}).code, 0);
+    EXPECT_EQ(steradian({"lint", "scene.json"}).out, "scene.json: 0 warnings, 0 notes\n");
+}
+
+TEST_F(LintCommand, Json) {
+    const Outcome o = steradian({"lint", "bad.json", "--json"});
+    EXPECT_EQ(field(o.out, "rule"), "unused");
+    EXPECT_EQ(field(o.out, "pointer"), "/materials/spare");
+    EXPECT_EQ(field(o.out, "line"), "3");
+    EXPECT_EQ(field(o.out, "element"), "material");
+    EXPECT_EQ(field(o.out, "warnings"), "1");
+    EXPECT_EQ(field(o.out, "notes"), "1");
+}
+
+TEST_F(LintCommand, RepetitionsAreCounted) {
+    std::string many = kMistakes;
+    const std::string one = many.substr(many.find("{\"type\": \"sphere\""), 59);
+    ASSERT_TRUE(one.ends_with("}}")) << one;
+    for (int i = 0; i < 4; ++i) many.insert(many.find(one), one + ", ");
+    spit(folder_.file("many.json"), many);
+    const Outcome o = steradian({"lint", "many.json", "--max-per-rule", "2"});
+    EXPECT_NE(o.out.find("warning: and 3 more [ior-one]\nmany.json: 5 warnings, 1 note\n"), std::string::npos) << o.out;
+    EXPECT_EQ(steradian({"lint", "many.json", "--max-per-rule", "0"}).out.find(" more ["), std::string::npos);
+}
+
+TEST_F(LintCommand, UsageAndBadScenesHaveTheirCodes) {
+    EXPECT_EQ(steradian({"lint"}).code, 2);
+    EXPECT_EQ(steradian({"lint", "missing.json"}).code, 3);
+    EXPECT_EQ(steradian({"lint", "bad.json", "--variant", "red"}).code, 2);
+    const Outcome unknown = steradian({"lint", "bad.json", "--disable", "open-gras"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("did you mean 'open-glass'?"), std::string::npos) << unknown.err;
+    spit(folder_.file("broken.json"), "{\"version\": 1, ");
+    const Outcome broken = steradian({"lint", "broken.json"});
+    EXPECT_EQ(broken.code, 3);
+    EXPECT_EQ(broken.err.rfind("broken.json:1:", 0), 0u) << broken.err;
+}
+
+TEST_F(LintCommand, RulesAreListed) {
+    const Outcome o = steradian({"lint", "--list-rules"});
+    EXPECT_EQ(o.code, 0);
+    EXPECT_NE(o.out.find("\nopen-glass            warning  "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("\nunused                note     "), std::string::npos) << o.out;
+}
+
+TEST_F(LintCommand, InfoNamesWhatIsUnused) {
+    const Outcome text = steradian({"info", "bad.json"}), json = steradian({"info", "bad.json", "--json"});
+    EXPECT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find("\n  bad.json:3:24 (/materials/spare): note: material 'spare' is not used [unused]\n"),
+              std::string::npos)
+        << text.out;
+    EXPECT_EQ(text.out.find("ior-one"), std::string::npos) << "that is for lint";
+    EXPECT_EQ(field(json.out, "pointer"), "/materials/spare");
+}
+
+}  // namespace
+}  // namespace steradian::test

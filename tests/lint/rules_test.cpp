@@ -1,0 +1,580 @@
+// Each rule has a scene that it finds something in, and near misses in which there is nothing to find.
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <set>
+
+#include "lint_scene.h"
+
+namespace steradian::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct Case {
+    const char* name;
+    const char* rule;  ///< the only one that finds something, once; "" for a near miss
+    std::function<void(LintScene&)> make;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+Material glass(float eta = 1.5f) { return GlassMaterial{eta}; }
+Affine at(double x, double y, double z) { return translation(x, y, z); }
+/// Replaces the grey of the sphere, whose material goes away.
+void wear(LintScene& t, Material m) { t.s.materials[0] = std::move(m), t.s.textures.clear(); }
+OpenPbrMaterial rough_by(TextureId texture) {
+    OpenPbrMaterial m;
+    m.specular_roughness = {1, texture};
+    return m;
+}
+void map_normals(LintScene& t, const std::vector<int>& texels) {
+    t.s.reliefs.push_back({MaterialId{0}, NormalMap{t.texture(t.bytes(texels), ColorSpace::linear)}});
+}
+Mesh scaled(Mesh m, float factor) {
+    for (Vec3& p : m.positions) p = p * factor;
+    return m;
+}
+Mesh with_uvs(Mesh m) {
+    m.uvs.resize(m.positions.size());
+    return m;
+}
+
+const Case kMaterialCases[] = {
+    {"nothing", "", [](LintScene&) {}},
+    {"UnusedMaterial", "unused", [](LintScene& t) { t.material(MirrorMaterial{}); }},
+    {"UnusedTexture", "unused", [](LintScene& t) { t.constant(1); }},
+    {"UnusedImage", "unused",
+     [](LintScene& t) {
+         t.bytes({1, 2, 3});
+     }},
+    {"UnusedShape", "unused", [](LintScene& t) { add<ShapeId>(t.s.shapes, Shape(Sphere{})); }},
+    {"UnusedMesh", "unused", [](LintScene& t) { add<MeshId>(t.s.meshes, cube(1)); }},
+    {"UnusedProfile", "unused",
+     [](LintScene& t) {
+         t.s.profiles.push_back({{0, 90}, {0}, {1, 1}});
+     }},
+    {"UsedByAMix", "",
+     [](LintScene& t) {
+         t.s.instances[0].material = t.material(MixMaterial{MaterialId{0}, t.material(MirrorMaterial{})});
+     }},
+    {"Bright", "albedo-above-one",
+     [](LintScene& t) {
+         t.s.textures[0] = ConstantTexture{{0.1f, 1.1f, 0}};
+     }},
+    {"White", "",
+     [](LintScene& t) {
+         t.s.textures[0] = ConstantTexture{{1, 1, 1}};
+     }},
+    {"BrightChecker", "albedo-above-one",
+     [](LintScene& t) {
+         t.s.textures[0] = CheckerTexture{{0, 0, 0}, {2, 0, 0}};
+     }},
+    {"BrightTexel", "albedo-above-one",
+     [](LintScene& t) {
+         t.s.images.clear(), t.s.textures.clear();
+         t.texture(t.image({0.5f, 1.5f, 0.2f}), ColorSpace::linear);
+     }},
+    {"BrightestTexelIsWhite", "",
+     [](LintScene& t) {
+         t.s.textures.clear();
+         t.texture(t.image({0.5f, 1, 0.2f}), ColorSpace::linear);
+     }},
+    {"BrightProduct", "albedo-above-one",
+     [](LintScene& t) {
+         const TextureId texels = t.texture(t.image({0.5f, 0.9f}), ColorSpace::linear), twice = t.constant(2);
+         t.s.textures[0] = ProductTexture{texels, twice};
+     }},
+    {"SumOfTwo", "albedo-above-one",
+     [](LintScene& t) {
+         t.s.materials[0] = DiffuseTransmissionMaterial{TextureId{0}, t.constant(0.6f)};
+     }},
+    {"SumOfTwoIsOne", "",
+     [](LintScene& t) {
+         t.s.materials[0] = DiffuseTransmissionMaterial{TextureId{0}, t.constant(0.5f)};
+     }},
+    {"BrightMirror", "albedo-above-one",
+     [](LintScene& t) {
+         wear(t, MirrorMaterial{{1, 1, 1.5f}});
+     }},
+    {"BrightGlass", "albedo-above-one",
+     [](LintScene& t) {
+         wear(t, GlassMaterial{1.5f, {1, 1, 1}, {2, 2, 2}});
+     }},
+    {"BrightMetal", "albedo-above-one",
+     [](LintScene& t) {
+         wear(t, ConductorMaterial{*metal_index("gold"), {}, {1.2f, 1, 1}});
+     }},
+    {"BrightBase", "albedo-above-one",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.base_color = {{1.5f, 0, 0}};
+         wear(t, m);
+     }},
+    {"BrightBaseOfLittleWeight", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.base_color = {{1.5f, 0, 0}};
+         m.base_weight = 0.5f;
+         wear(t, m);
+     }},
+    {"BrightVertices", "albedo-above-one",
+     [](LintScene& t) {
+         t.s.textures[0] = VertexColorTexture{};
+         Mesh m = cube(1);
+         m.colors.assign(8, {0, 0, 3});
+         t.s.instances.clear(), t.s.shapes.clear();
+         t.place(m, MaterialId{0});
+     }},
+    {"EmissionMayBeBright", "",
+     [](LintScene& t) {
+         t.s.lights.push_back(
+             AreaLight{InstanceId{0}, {5, 5, 5}, false, 1, true, t.texture(t.image({3, 4}), ColorSpace::linear)});
+     }},
+    {"VacuumGlass", "ior-one", [](LintScene& t) { wear(t, glass(1)); }},
+    {"ThinAir", "", [](LintScene& t) { wear(t, glass(1.002f)); }},
+    {"VacuumRefraction", "ior-one", [](LintScene& t) { wear(t, RefractionMaterial{1}); }},
+    {"OpaqueWithIorOne", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.specular_ior = 1;
+         wear(t, m);
+     }},
+    {"RoughnessOfColours", "color-space",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.bytes({9, 99, 199}), ColorSpace::srgb));
+     }},
+    {"RoughnessOfNumbers", "",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.bytes({9, 99, 199}), ColorSpace::linear));
+     }},
+    {"BlackOrWhiteRoughness", "",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.bytes({0, 0, 0, 255, 255, 255}), ColorSpace::srgb));
+     }},
+    {"ColoursReadAsNumbers", "color-space",
+     [](LintScene& t) {
+         t.s.textures.clear(), t.texture(t.bytes({200, 100, 50}), ColorSpace::linear);
+     }},
+    {"ColoursReadAsColours", "",
+     [](LintScene& t) {
+         t.s.textures.clear(), t.texture(t.bytes({200, 100, 50}), ColorSpace::srgb);
+     }},
+    {"LinearFloatColours", "",
+     [](LintScene& t) { t.s.textures.clear(), t.texture(t.image({0.2f}), ColorSpace::linear); }},
+    {"RoughnessBeyondOne", "out-of-range",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.image({0.2f, 1.5f}), ColorSpace::linear));
+     }},
+    {"RoughnessUpToOne", "",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.image({0, 1}), ColorSpace::linear));
+     }},
+    {"TexelsThatAreNoNumbers", "out-of-range",
+     [](LintScene& t) {
+         t.s.textures.clear(), t.texture(t.image({0.2f, kNan}), ColorSpace::linear);
+     }},
+    {"PictureAsNormals", "normal-map",
+     [](LintScene& t) {
+         map_normals(t, {128, 128, 128, 250, 250, 250, 100, 110, 120});
+     }},
+    {"NormalsIntoTheSurface", "normal-map",
+     [](LintScene& t) {
+         map_normals(t, {128, 128, 0});
+     }},
+    {"FlatNormals", "",
+     [](LintScene& t) {
+         map_normals(t, {128, 128, 255, 200, 128, 233});
+     }},
+    {"NoUvs", "missing-uvs",
+     [](LintScene& t) { t.s.textures[0] = CheckerTexture{}, t.place(cube(0.1f), MaterialId{0}, at(2, 0, 0)); }},
+    {"Uvs", "",
+     [](LintScene& t) {
+         t.s.textures[0] = CheckerTexture{}, t.place(with_uvs(cube(0.1f)), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"NoUvsOfSetOne", "missing-uvs",
+     [](LintScene& t) {
+         ImageTexture image;
+         image.image = t.bytes({10, 20, 30, 40, 50, 60});
+         image.uv_set = 1;
+         t.s.textures[0] = image;
+         t.place(with_uvs(cube(0.1f)), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"NoUvsForOneTexel", "",
+     [](LintScene& t) {
+         t.s.textures.clear(), t.texture(t.bytes({200, 100, 50}), ColorSpace::srgb);
+         t.place(cube(0.1f), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"NoColours", "missing-colors",
+     [](LintScene& t) {
+         const MaterialId painted =
+             t.material(DiffuseMaterial{add<TextureId>(t.s.textures, Texture(VertexColorTexture{})), true});
+         t.place(cube(0.1f), painted, at(2, 0, 0));
+     }},
+};
+
+const Case kMeshCases[] = {
+    {"VertexThatIsNoNumber", "nan-vertices",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.positions[1].y = kNan;
+         t.place(joined(triangle(), m), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"VertexFarBeyond", "nan-vertices",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.positions[1].y = 1e16f;
+         t.place(joined(triangle(), m), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"VertexOfNoTriangle", "",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.positions.push_back({kNan, 0, 0});
+         t.place(m, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"NormalThatIsNoNumber", "nan-vertices",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.normals = {{0, 0, 1}, {0, 0, kNan}, {0, 0, 1}};
+         t.place(m, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"TriangleWithoutArea", "degenerate-triangles",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.indices.insert(m.indices.end(), {0, 1, 1});
+         t.place(m, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"ThinTriangle", "",
+     [](LintScene& t) {
+         t.place(Mesh{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0}}, {}, {}, {0, 1, 2}}, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"TwoMaterialsInOnePlace", "coincident-surfaces",
+     [](LintScene& t) { t.place(triangle(), MaterialId{0}, at(2, 0, 0)), t.place(triangle(), t.grey(), at(2, 0, 0)); }},
+    {"TwoMaterialsSideBySide", "",
+     [](LintScene& t) {
+         t.place(triangle(), MaterialId{0}, at(2, 0, 0)), t.place(triangle(), t.grey(), at(2, 0, 1e-5));
+     }},
+    {"TwiceTheSame", "",
+     [](LintScene& t) {
+         t.place(triangle(), MaterialId{0}, at(2, 0, 0)), t.place(triangle(), MaterialId{0}, at(2, 0, 0));
+     }},
+    {"GlassTwice", "coincident-surfaces",
+     [](LintScene& t) {
+         const MaterialId m = t.material(glass());
+         t.place(cube(0.1f), m, at(2, 0, 0)), t.place(cube(0.1f), m, at(2, 0, 0));
+     }},
+    {"TwoMaterialsInOnePlaceByTransforms", "coincident-surfaces",
+     [](LintScene& t) {
+         Mesh moved = triangle();
+         for (Vec3& p : moved.positions) p = p + Vec3{2, 0, 0};
+         t.place(triangle(), MaterialId{0}, at(2, 0, 0)), t.place(moved, t.grey());
+     }},
+    {"OpenBox", "open-glass",
+     [](LintScene& t) { t.place(without_last_triangles(cube(0.5f), 1), t.material(glass()), at(2, 0, 0)); }},
+    {"ClosedBox", "", [](LintScene& t) { t.place(cube(0.5f), t.material(glass()), at(2, 0, 0)); }},
+    {"ClosedBoxOfLooseTriangles", "",
+     [](LintScene& t) { t.place(unwelded(cube(0.5f)), t.material(glass()), at(2, 0, 0)); }},
+    {"OpenBoxOfPerfectRefraction", "",
+     [](LintScene& t) {
+         t.place(without_last_triangles(cube(0.5f), 1), t.material(RefractionMaterial{}), at(2, 0, 0));
+     }},
+    {"OpenBoxOfThinGlass", "",
+     [](LintScene& t) {
+         t.place(without_last_triangles(cube(0.5f), 1), t.material(ThinGlassMaterial{}), at(2, 0, 0));
+     }},
+    {"OpenBoxOfOpenPbr", "open-glass",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.transmission_weight = {1};
+         t.place(without_last_triangles(cube(0.5f), 1), t.material(m), at(2, 0, 0));
+     }},
+    {"OpenBoxOfThinWalls", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.transmission_weight = {1};
+         m.geometry_thin_walled = true;
+         t.place(without_last_triangles(cube(0.5f), 1), t.material(m), at(2, 0, 0));
+     }},
+    {"OpenBoxOfMetal", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.transmission_weight = {1};
+         m.base_metalness = {1};
+         t.place(without_last_triangles(cube(0.5f), 1), t.material(m), at(2, 0, 0));
+     }},
+    {"BoxClosedByAnotherMaterial", "",
+     [](LintScene& t) {
+         Mesh lid = cube(0.5f);
+         lid.indices.erase(lid.indices.begin(), lid.indices.end() - 6);
+         t.place(without_last_triangles(cube(0.5f), 2), t.material(glass()), at(2, 0, 0));
+         t.place(lid, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"BoxWithItsLidElsewhere", "open-glass",
+     [](LintScene& t) {
+         Mesh lid = cube(0.5f);
+         lid.indices.erase(lid.indices.begin(), lid.indices.end() - 6);
+         t.place(without_last_triangles(cube(0.5f), 2), t.material(glass()), at(2, 0, 0));
+         t.place(lid, MaterialId{0}, at(2, 0, 1));
+     }},
+    {"SeamWithoutSharedVertices", "",
+     [](LintScene& t) {
+         // The middle of one side of a face is a vertex on one of its sides only.
+         Mesh m = cube(0.5f);
+         m.positions.push_back({0, -0.5f, -0.5f});
+         m.indices[24] = 0, m.indices[25] = 2, m.indices[26] = 3, m.indices[27] = 0, m.indices[28] = 3,
+         m.indices[29] = 8;
+         m.indices.insert(m.indices.end(), {8, 3, 1});
+         t.place(m, t.material(glass()), at(2, 0, 0));
+     }},
+    {"WindowPane", "open-glass",
+     [](LintScene& t) {
+         t.place(Shape(Rectangle{{2, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), t.material(glass()));
+     }},
+    {"Lake", "",
+     [](LintScene& t) {
+         t.place(Shape(Rectangle{{0, -2, 0}, {3, 0, 0}, {0, 0, -3}}), t.material(glass()));
+     }},
+    {"WavyLake", "",
+     [](LintScene& t) {
+         t.place(Mesh{{{-1, -2, -1}, {1, -1.9f, -1}, {0, -2, 1}}, {}, {}, {0, 2, 1}}, t.material(glass()));
+     }},
+    {"GlassInsideOut", "inverted-normals",
+     [](LintScene& t) { t.place(inside_out(cube(0.5f)), t.material(glass()), at(2, 0, 0)); }},
+    {"OneOfTwoPartsInsideOut", "inverted-normals",
+     [](LintScene& t) {
+         t.place(joined(cube(0.5f), inside_out(box({0.6f, 0, 0}, {0.7f, 0.1f, 0.1f}))), t.material(glass()),
+                 at(2, 0, 0));
+     }},
+    {"HollowGlass", "",
+     [](LintScene& t) { t.place(joined(cube(0.5f), inside_out(cube(0.4f))), t.material(glass()), at(2, 0, 0)); }},
+    {"BubbleInGlass", "",
+     [](LintScene& t) {
+         const MaterialId m = t.material(glass());
+         t.place(cube(0.5f), m, at(2, 0, 0)), t.place(inside_out(cube(0.4f)), m, at(2, 0, 0));
+     }},
+    {"MirroredGlass", "",
+     [](LintScene& t) { t.place(cube(0.5f), t.material(glass()), at(2, 0, 0) * scaling(-1, 1, 1)); }},
+    {"GlassWoundBothWays", "inverted-normals",
+     [](LintScene& t) {
+         Mesh m = cube(0.5f);
+         std::swap(m.indices[0], m.indices[1]);
+         t.place(m, t.material(glass()), at(2, 0, 0));
+     }},
+    {"TwoSidedInsideOut", "", [](LintScene& t) { t.place(inside_out(cube(0.5f)), MaterialId{0}, at(2, 0, 0)); }},
+    {"OneSidedInsideOut", "inverted-normals",
+     [](LintScene& t) { t.place(inside_out(cube(0.5f)), t.grey(false), at(2, 0, 0)); }},
+    {"OneSided", "", [](LintScene& t) { t.place(cube(0.5f), t.grey(false), at(2, 0, 0)); }},
+    {"OneSidedRoom", "",
+     [](LintScene& t) {
+         t.place(inside_out(cube(9)), t.grey(false)), t.s.lights[0] = PointLight{{2, 2, 2}};
+     }},
+    {"OneSidedRoomOutwards", "inverted-normals",
+     [](LintScene& t) {
+         t.place(cube(9), t.grey(false)), t.s.lights[0] = PointLight{{2, 2, 2}};
+     }},
+    {"LampInsideOut", "inverted-normals",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{t.place(inside_out(cube(0.2f)), MaterialId{0}, at(2, 0, 0))});
+     }},
+    {"LampInsideOutThatShinesBothWays", "",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{t.place(inside_out(cube(0.2f)), MaterialId{0}, at(2, 0, 0)), {1, 1, 1}, true});
+     }},
+    {"NormalsOnTheOtherSide", "inverted-normals",
+     [](LintScene& t) {
+         Mesh m = triangle();
+         m.normals.assign(3, {0, 0, -1});
+         t.place(m, MaterialId{0}, at(2, 0, 0));
+     }},
+    {"NormalsOfOneTriangleOfThreeOnTheOtherSide", "",
+     [](LintScene& t) {
+         Mesh m = joined(joined(triangle(), triangle()), triangle());
+         m.normals.assign(9, {0, 0, 1});
+         for (size_t i = 0; i < 3; ++i) m.normals[i].z = -1;
+         for (size_t i = 3; i < 9; ++i) m.positions[i].z += float(i / 3);
+         t.place(m, MaterialId{0}, at(2, 0, 0));
+     }},
+};
+
+const Case kWorldCases[] = {
+    {"NoLight", "no-light", [](LintScene& t) { t.s.lights.clear(); }},
+    {"NoLightNeeded", "", [](LintScene& t) { t.s.lights.clear(), t.settings.integrator = IntegratorKind::normals; }},
+    {"LightOfAMaterial", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.emission_luminance = 1;
+         t.s.lights.clear(), t.place(Shape(Sphere{{2, 0, 0}, 0.1f}), t.material(m));
+     }},
+    {"DarkLight", "dark-light",
+     [](LintScene& t) {
+         t.s.lights.push_back(PointLight{{5, 5, 5}, {0, 0, 0}});
+     }},
+    {"DimLight", "",
+     [](LintScene& t) {
+         t.s.lights.push_back(PointLight{{5, 5, 5}, {0, 0, 1e-9f}});
+     }},
+    {"BlackEmissionTexture", "dark-light",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{
+             InstanceId{0}, {5, 5, 5}, false, 1, true, t.texture(t.bytes({0, 0, 0, 0, 0, 0}), ColorSpace::srgb)});
+     }},
+    {"AlmostBlackEmissionTexture", "",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{
+             InstanceId{0}, {5, 5, 5}, false, 1, true, t.texture(t.bytes({0, 0, 0, 0, 0, 1}), ColorSpace::srgb)});
+     }},
+    {"LightInABox", "light-in-wall",
+     [](LintScene& t) {
+         t.place(cube(0.5f), MaterialId{0}, at(2, 0, 0)), t.s.lights.push_back(PointLight{{2.4f, 0, 0}});
+     }},
+    {"LightBesideABox", "",
+     [](LintScene& t) {
+         t.place(cube(0.5f), MaterialId{0}, at(2, 0, 0)), t.s.lights.push_back(PointLight{{2.6f, 0, 0}});
+     }},
+    {"LightInAnOpenBox", "",
+     [](LintScene& t) {
+         t.place(without_last_triangles(cube(0.5f), 1), MaterialId{0}, at(2, 0, 0));
+         t.s.lights.push_back(PointLight{{2.4f, 0, 0}});
+     }},
+    {"LightInGlass", "",
+     [](LintScene& t) {
+         t.place(cube(0.5f), t.material(glass()), at(2, 0, 0)), t.s.lights.push_back(PointLight{{2.4f, 0, 0}});
+     }},
+    {"LightInAHalfTransparentBox", "",
+     [](LintScene& t) {
+         OpenPbrMaterial m;
+         m.geometry_opacity = {0.5f};
+         t.place(cube(0.5f), t.material(m), at(2, 0, 0)), t.s.lights.push_back(PointLight{{2.4f, 0, 0}});
+     }},
+    {"SpotInASphere", "light-in-wall",
+     [](LintScene& t) {
+         t.s.lights.push_back(SpotLight{{0, 0.5f, 0}});
+     }},
+    {"LampInASphere", "light-in-wall",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{t.place(Shape(Sphere{{0, 0, 0}, 0.2f}), MaterialId{0})});
+     }},
+    {"LampHalfInASphere", "",
+     [](LintScene& t) {
+         t.s.lights.push_back(AreaLight{t.place(Shape(Sphere{{0, 1, 0}, 0.2f}), MaterialId{0})});
+     }},
+    {"LightInTheWallOfARoom", "light-in-wall",
+     [](LintScene& t) {
+         t.place(joined(cube(9), inside_out(cube(8))), MaterialId{0});
+         t.s.lights[0] = PointLight{{2, 2, 2}}, t.s.lights.push_back(PointLight{{8.5f, 0, 0}});
+     }},
+    {"LightInARoom", "",
+     [](LintScene& t) {
+         t.place(cube(9), MaterialId{0}), t.s.lights[0] = PointLight{{2, 2, 2}};
+     }},
+    {"Giant", "scale",
+     [](LintScene& t) { t.place(without_last_triangles(scaled(cube(1), 1800), 1), MaterialId{0}, at(0, 1800, 0)); }},
+    {"LargeThing", "", [](LintScene& t) { t.place(scaled(cube(1), 400), MaterialId{0}, at(0, 401.5, 0)); }},
+    {"Ground", "",
+     [](LintScene& t) {
+         t.place(box({-5000, -2, -5000}, {5000, -1.5f, 5000}), MaterialId{0});
+     }},
+    {"Dome", "",
+     [](LintScene& t) {
+         t.place(Shape(Sphere{{0, 0, 0}, 5000}), MaterialId{0}), t.s.lights[0] = PointLight{{2, 2, 2}};
+     }},
+    {"DomeOfTriangles", "",
+     [](LintScene& t) {
+         t.place(cube(5000), MaterialId{0}), t.s.lights[0] = PointLight{{2, 2, 2}};
+     }},
+    {"CameraFarAway", "scale",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 9000}}};
+     }},
+    {"CameraAway", "",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 200}}};
+     }},
+    {"FarFromItsOrigin", "precision",
+     [](LintScene& t) {
+         Mesh m = cube(1);
+         for (Vec3& p : m.positions) p = p + Vec3{500000, 0, 0};
+         t.place(m, MaterialId{0}, at(-500002.5, 0, 0));
+     }},
+    {"NotSoFarFromItsOrigin", "",
+     [](LintScene& t) {
+         Mesh m = cube(1);
+         for (Vec3& p : m.positions) p = p + Vec3{5000, 0, 0};
+         t.place(m, MaterialId{0}, at(-5002.5, 0, 0));
+     }},
+    {"CameraInABall", "camera-in-wall",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 0.5f}}};
+     }},
+    {"CameraInAMesh", "camera-in-wall", [](LintScene& t) { t.place(cube(2), MaterialId{0}, at(0, 0, 6)); }},
+    {"CameraInAGlassBall", "",
+     [](LintScene& t) {
+         wear(t, glass()), t.s.cameras = {PerspectiveCamera{{0, 0, 0.5f}}};
+     }},
+    {"CameraInALamp", "",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 0.5f}}};
+         t.s.lights.push_back(AreaLight{InstanceId{0}, {1, 1, 1}, true});
+     }},
+    {"CameraTurnedAway", "empty-view",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 6}, {0, 0, 9}}};
+     }},
+    {"CameraThatLooksBeside", "empty-view",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 6}, {9, 0, 0}}};
+     }},
+    {"CameraThatSeesTheRim", "",
+     [](LintScene& t) {
+         t.s.cameras = {PerspectiveCamera{{0, 0, 6}, {3, 0, 0}}};
+     }},
+    {"ParallelCameraBeside", "empty-view",
+     [](LintScene& t) {
+         t.s.cameras = {OrthographicCamera{{9, 0, 6}, {9, 0, 0}}};
+     }},
+    {"ParallelCamera", "",
+     [](LintScene& t) {
+         t.s.cameras = {OrthographicCamera{{1.5f, 0, 6}, {1.5f, 0, 0}}};
+     }},
+    {"PanoramaTurnedAway", "",
+     [](LintScene& t) {
+         t.s.cameras = {PanoramaCamera{{0, 0, 6}, {0, 0, 9}}};
+     }},
+    {"NothingButSky", "",
+     [](LintScene& t) { t.s.instances.clear(), t.s.shapes.clear(), t.s.materials.clear(), t.s.textures.clear(); }},
+};
+
+class Rules : public testing::TestWithParam<Case> {};
+
+TEST_P(Rules, FindNothingElse) {
+    LintScene t;
+    GetParam().make(t);
+    const std::string rule = GetParam().rule;
+    std::map<std::string, int> expected;
+    if (!rule.empty()) expected[rule] = 1;
+    std::string all;
+    for (const Finding& f : t.lint().findings) all += f.str() + "\n";
+    EXPECT_EQ(t.rules(), expected) << all;
+
+    LintOptions without;
+    if (!rule.empty()) without.disabled = {rule};
+    EXPECT_TRUE(t.lint(without).findings.empty());
+}
+
+const auto kName = [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); };
+INSTANTIATE_TEST_SUITE_P(Material, Rules, testing::ValuesIn(kMaterialCases), kName);
+INSTANTIATE_TEST_SUITE_P(Mesh, Rules, testing::ValuesIn(kMeshCases), kName);
+INSTANTIATE_TEST_SUITE_P(World, Rules, testing::ValuesIn(kWorldCases), kName);
+
+/// "not-honoured" and "input" are for what readers say, tests/lint/files_test.cpp.
+TEST(RuleTable, EachRuleHasAScene) {
+    std::set<std::string_view> tried{"not-honoured", "input", ""}, known{""};
+    for (const Case& c : kMaterialCases) tried.insert(c.rule);
+    for (const Case& c : kMeshCases) tried.insert(c.rule);
+    for (const Case& c : kWorldCases) tried.insert(c.rule);
+    for (const LintRule& rule : lint_rules()) known.insert(rule.name);
+    EXPECT_EQ(tried, known);
+}
+
+}  // namespace
+}  // namespace steradian::test
