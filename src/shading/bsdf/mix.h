@@ -4,7 +4,17 @@
 
 #include <algorithm>
 
+// All kinds that a part may be: they are visited here.
+#include "shading/bsdf/conductor.h"
+#include "shading/bsdf/diffuse.h"
+#include "shading/bsdf/diffuse_transmission.h"
 #include "shading/bsdf/fold.h"
+#include "shading/bsdf/glass.h"
+#include "shading/bsdf/mirror.h"
+#include "shading/bsdf/open_pbr.h"
+#include "shading/bsdf/refraction.h"
+#include "shading/bsdf/rough_glass.h"
+#include "shading/bsdf/thin_glass.h"
 
 namespace steradian {
 
