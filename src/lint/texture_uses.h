@@ -40,10 +40,11 @@ void each_texture(const Material& material, const Visit& visit) {
     if (const auto* mix = std::get_if<MixMaterial>(&material)) number(mix->weight, "weight");
     if (const auto* m = std::get_if<OpenPbrMaterial>(&material)) {
         color(m->base_color, "base_color"), number(m->base_metalness, "base_metalness");
-        number(m->specular_roughness, "specular_roughness");
+        color(m->specular_color, "specular_color"), number(m->specular_roughness, "specular_roughness");
         number(m->transmission_weight, "transmission_weight"), color(m->transmission_color, "transmission_color");
         number(m->subsurface_weight, "subsurface_weight"), color(m->subsurface_color, "subsurface_color");
         number(m->fuzz_weight, "fuzz_weight"), color(m->fuzz_color, "fuzz_color");
+        number(m->fuzz_roughness, "fuzz_roughness"), number(m->coat_roughness, "coat_roughness");
         color(m->coat_color, "coat_color"), color(m->emission_color, "emission_color", Role::emission);
         number(m->geometry_opacity, "geometry_opacity");
     }
