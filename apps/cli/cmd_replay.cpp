@@ -45,6 +45,8 @@ void print_vertex(const TracedVertex& v, size_t bounces) {
         std::cout << fmt::format(
             "    emission {}: pdf {:.6g} of the bsdf, {:.6g} of light samples, weight {:.6g}, adds {}\n",
             text_of(v.emission), v.bsdf_pdf, v.light_pdf, v.mis_weight, text_of(v.contribution));
+    if (v.wavelength > 0)
+        std::cout << fmt::format("    wavelength {:.6g} nm, weight {}\n", v.wavelength, text_of(v.wavelength_weight));
     for (const TracedLight& l : v.lights)
         std::cout << fmt::format("    light {}{} along {}: pdf {}, {:.6g} of the bsdf, weight {:.6g}, {}\n", l.light,
                                  named(l.name), text_of(l.direction),

@@ -45,6 +45,9 @@ struct TracedVertex {
     float bsdf_pdf = 0, light_pdf = 0;
     float mis_weight = 1;
     Rgb contribution;  ///< of the emission to the radiance of the sample
+    /// Chosen here, in nanometres, for the rest of the path; 0 where none was.
+    float wavelength = 0;
+    Rgb wavelength_weight;  ///< what the throughput was multiplied by
     std::vector<TracedLight> lights;
     std::optional<TracedBounce> bounce;
 };

@@ -126,6 +126,9 @@ struct GlassMaterial {
     Rgb reflectance{1, 1, 1};    ///< tint of the reflected part
     Rgb transmittance{1, 1, 1};  ///< tint of the transmitted part
     Roughness roughness{};
+    /// Abbe number V_d, at least 1: eta is the index at 587.56 nm, and others follow by Cauchy's formula with two
+    /// terms. 0 or infinite: no dispersion. With eta < 1, a bubble, that of the glass around it.
+    float abbe = 0;
 };
 
 /// A thin sheet of glass as one surface: all reflections inside it are summed, what passes goes straight on.
@@ -180,6 +183,8 @@ struct OpenPbrMaterial {
     float specular_roughness_anisotropy = 0;
     FloatInput transmission_weight{0};
     ColorInput transmission_color{};
+    float transmission_dispersion_scale = 0;         ///< divides the Abbe number; 0: no dispersion. In [0, 1]
+    float transmission_dispersion_abbe_number = 20;  ///< V_d, as GlassMaterial::abbe; at least 1
     FloatInput subsurface_weight{0};
     ColorInput subsurface_color{{0.8f, 0.8f, 0.8f}};
     float subsurface_scatter_anisotropy = 0;  ///< in [-1, 1]; of thin walls: from what is reflected to what passes

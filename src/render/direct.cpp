@@ -23,7 +23,8 @@ private:
         const Vec3 wo = -ray.d;
         add_emission(id, emitted_radiance(shading_, point, wo), false);
         if (depth >= c_.settings.max_depth) return;
-        const Vertex vertex = vertex_at(point, wo);
+        disperse(id, point);
+        const Vertex vertex = vertex_at(point, wo, path(id).wavelength);
         if (is_specular(vertex.bsdf))
             follow(id, point, vertex.bsdf, wo, depth);
         else

@@ -63,7 +63,8 @@ private:
         add_emission(id, emitted_radiance(shading_, point, wo), light, depth, false,
                      [&] { return pdf_light(shading_, light, states_[id].from, ray.d, &point); });
         if (depth >= c_.settings.max_depth) return;
-        const Vertex vertex = vertex_at(point, wo);
+        disperse(id, point);
+        const Vertex vertex = vertex_at(point, wo, path(id).wavelength);
         if (!is_specular(vertex.bsdf)) sample_lights(id, vertex, depth);
         scatter(id, point, vertex, depth);
     }

@@ -17,7 +17,7 @@ public:
     void vertex(TracedVertex vertex) noexcept {
         guarded([&] { trace_.vertices.push_back(std::move(vertex)); });
     }
-    /// Of the last vertex, as are the next three.
+    /// Of the last vertex, as are the next four.
     void emission(Rgb radiance, float bsdf_pdf, float light_pdf, float mis_weight, Rgb contribution) noexcept {
         if (failed_) return;
         TracedVertex& v = trace_.vertices.back();
@@ -30,6 +30,11 @@ public:
     }
     void bounce(const TracedBounce& bounce) noexcept {
         if (!failed_) trace_.vertices.back().bounce = bounce;
+    }
+    void wavelength(float nanometres, Rgb weight) noexcept {
+        if (failed_) return;
+        trace_.vertices.back().wavelength = nanometres;
+        trace_.vertices.back().wavelength_weight = weight;
     }
     /// How much of the light passes the next shadow ray, in the order in which they were told of.
     void shadow(float passes) noexcept {

@@ -89,6 +89,7 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         path.key = c_.sampler.key(path.x, path.y, unit.index(first_sample + i % samples));
         const FilterSample position = c_.filter.sample(c_.sampler.get_2d(path.key, kFilterDimension));
         path.weight = position.weight;
+        path.wavelength = 0;
         path.throughput = {1, 1, 1};
         path.radiance = {};
         const Vec2 film{static_cast<float>(path.x) + 0.5f + position.offset.x,
@@ -171,6 +172,14 @@ void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& 
         vertex.primitive = hit.prim;
     }
     c_.recorder->vertex(std::move(vertex));
+}
+
+void WavefrontIntegrator::choose_wavelength(uint32_t id) noexcept {
+    Path& path = paths_[id];
+    const WavelengthSample chosen = shading_.wavelengths->sample(c_.sampler.bits(path.key, kWavelengthDimension));
+    path.wavelength = chosen.wavelength;
+    path.throughput = path.throughput * chosen.weight;
+    if (c_.recorder) c_.recorder->wavelength(chosen.wavelength * 1000, chosen.weight);
 }
 
 void WavefrontIntegrator::continue_along(uint32_t id, const Ray& ray) noexcept {

@@ -18,10 +18,11 @@ namespace steradian {
 
 /// Which numbers of a sample are used for what. Groups of four belong together (sampler.h).
 enum Dimension : uint32_t {
-    kFilterDimension = 0,             // and 1
-    kLensDimension = 2,               // and 3
-    kBounceDimension = 4,             // four per bounce: choice of lobe, Russian roulette, direction
-    kLightDimension = 0x40000000,     // four per light, where all are sampled: position, choice of part, unused
+    kFilterDimension = 0,               // and 1
+    kLensDimension = 2,                 // and 3
+    kBounceDimension = 4,               // four per bounce: choice of lobe, Russian roulette, direction
+    kWavelengthDimension = 0x3ffffffc,  // where a scene disperses light
+    kLightDimension = 0x40000000,       // four per light, where all are sampled: position, choice of part, unused
     kOneLightDimension = 0x80000000,  // four per bounce, where one light is sampled: position, choice of part, of light
     kOpacityDimension = 0xc0000000,   // 4096 per bounce: whether the surfaces on the way to the next vertex are there
 };
@@ -47,7 +48,8 @@ protected:
     struct Path {
         SampleKey key;
         uint32_t x, y, pixel;
-        float weight;  ///< the filter's
+        float weight;      ///< the filter's
+        float wavelength;  ///< micrometres; 0: all, as long as nothing has dispersed the path's light
         Rgb throughput, radiance;
         RayCone cone;  ///< of the ray under way; kept only where the scene uses footprints
     };
@@ -91,6 +93,10 @@ protected:
         if (depth_ == 0 && first_hits_.wanted()) first_hits_.see(id, paths_[id].key, out, -ray.d);
         return out;
     }
+    /// Where the surface disperses light, the path gets a wavelength for the rest of its way, unless it has one.
+    void disperse(uint32_t id, const SurfacePoint& point) noexcept {
+        if (shading_.wavelengths && paths_[id].wavelength == 0 && disperses(shading_, point)) choose_wavelength(id);
+    }
     /// The path turns at `point`.
     void turn(uint32_t id, const SurfacePoint& point, const Bsdf& bsdf, Vec3 wo, const BsdfSample& next) noexcept {
         if (parts_.wanted()) parts_.turn(id, bsdf, wo, next);
@@ -103,8 +109,8 @@ protected:
         Bsdf bsdf;
         Vec3 wo;
     };
-    Vertex vertex_at(const SurfacePoint& point, Vec3 wo) const noexcept {
-        Vertex out{point, make_bsdf(shading_, point), wo};
+    Vertex vertex_at(const SurfacePoint& point, Vec3 wo, float wavelength = 0) const noexcept {
+        Vertex out{point, make_bsdf(shading_, point, wavelength), wo};
         out.from.ns = out.bsdf.frame.z;
         out.from = facing(out.from, wo);
         // What is seen from behind its shading normal scatters about the geometric one, if at all.
@@ -138,6 +144,7 @@ private:
         Rgb contribution;
     };
 
+    void choose_wavelength(uint32_t id) noexcept;
     void generate(const WorkUnit& unit, uint64_t first_sample, uint32_t samples) noexcept;
     void advance(uint32_t depth) noexcept;
     void look_through(std::span<Hit> hits) noexcept;

@@ -19,6 +19,7 @@ public:
         list(s.cameras);
         light_textures(s.lights);
         profiles(s.profiles);
+        dispersion(s.materials);
     }
     std::string hex() const { return hash_.hex(); }
 
@@ -34,6 +35,15 @@ private:
         for (const IntensityProfile& profile : profiles) {
             put('p');
             put(profile);
+        }
+    }
+
+    void dispersion(const std::vector<Material>& materials) {
+        for (uint32_t i = 0; i < materials.size(); ++i) {
+            if (const auto* glass = std::get_if<GlassMaterial>(&materials[i]); glass && glass->abbe != 0)
+                put('d', i, glass->abbe);
+            if (const auto* m = std::get_if<OpenPbrMaterial>(&materials[i]); m && m->transmission_dispersion_scale != 0)
+                put('d', i, m->transmission_dispersion_scale, m->transmission_dispersion_abbe_number);
         }
     }
 

@@ -110,6 +110,7 @@ private:
         color(m.reflectance, "the reflectance must be finite and not negative");
         color(m.transmittance, "the transmittance must be finite and not negative");
         check(m.roughness);
+        require(m.abbe == 0 || m.abbe >= 1, "an Abbe number must be at least 1, or 0 for no dispersion");
     }
     void check(const ThinGlassMaterial& m) const {
         eta(m.eta);
@@ -169,6 +170,8 @@ private:
         require(m.coat_ior >= 1.01f && m.coat_ior <= 3, "coat_ior must be between 1.01 and 3");
         require(m.subsurface_scatter_anisotropy >= -1 && m.subsurface_scatter_anisotropy <= 1,
                 "subsurface_scatter_anisotropy must be between -1 and 1");
+        unit(m.transmission_dispersion_scale, "transmission_dispersion_scale must be between 0 and 1");
+        require(m.transmission_dispersion_abbe_number >= 1, "transmission_dispersion_abbe_number must be at least 1");
         unit(m.thin_film_weight, weights);
         require(m.thin_film_thickness >= 0 && m.thin_film_thickness <= 10,
                 "thin_film_thickness must be between 0 and 10 micrometres");

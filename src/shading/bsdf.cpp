@@ -26,8 +26,8 @@ namespace {
 /// The lobe of one material that is no mix, about the normal that its relief gives it. `out` is a Bsdf or a part of
 /// one.
 template <class Out>
-void make_plain(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, Out& out) {
-    const LobeContext context{scene, point, scene.materials[index(id)]};
+void make_plain(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, float wavelength, Out& out) {
+    const LobeContext context{scene, point, scene.materials[index(id)], wavelength};
     Vec3 n = point.ns;
     if (context.material.relief != kNoRelief) {
         const ReliefNormal facet = relief_normal(scene, point, scene.scene.reliefs[context.material.relief]);
@@ -49,9 +49,17 @@ void make_plain(const ShadingScene& scene, const SurfacePoint& point, MaterialId
     std::visit(make, scene.scene.materials[index(id)]);
 }
 
+/// Of a material that is no mix: glass, and what a texture does not keep from being so.
+bool plain_disperses(const ShadingScene& scene, const SurfacePoint& point, MaterialId id) {
+    if (!scene.materials[index(id)].disperses) return false;
+    const auto* layered = std::get_if<OpenPbrMaterial>(&scene.scene.materials[index(id)]);
+    return !layered || eval_input(scene, layered->transmission_weight, point) > 0;
+}
+
 /// Where parts of a mix let rays pass, what is left of the others makes a whole: a ray that has not passed has met
 /// them.
-void make_mix(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, const Mixture& mixture, Bsdf& out) {
+void make_mix(const ShadingScene& scene, const SurfacePoint& point, MaterialId id, const Mixture& mixture,
+              float wavelength, Bsdf& out) {
     MixBsdf& mix = out.lobe.emplace<MixBsdf>();
     const float all = scene.materials[index(id)].cut_out ? opacity_at(scene, point) : 1;
     Vec3 sum;
@@ -61,7 +69,7 @@ void make_mix(const ShadingScene& scene, const SurfacePoint& point, MaterialId i
         if (!(weight > 0)) continue;
         MixBsdf::Part& part = mix.parts[mix.count++];
         part.weight = weight;
-        make_plain(scene, point, share.material, part);
+        make_plain(scene, point, share.material, wavelength, part);
         sum = sum + part.frame.z * part.weight;
     }
     const bool same = std::all_of(mix.parts.begin(), mix.parts.begin() + mix.count,
@@ -71,19 +79,29 @@ void make_mix(const ShadingScene& scene, const SurfacePoint& point, MaterialId i
 
 }  // namespace
 
-Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point) noexcept {
+bool disperses(const ShadingScene& scene, const SurfacePoint& point) noexcept {
+    const MaterialId id = scene.scene.instances[point.instance].material;
+    if (!scene.materials[index(id)].disperses) return false;
+    if (!std::holds_alternative<MixMaterial>(scene.scene.materials[index(id)]))
+        return plain_disperses(scene, point, id);
+    const Mixture mixture(scene, point, id);
+    return std::any_of(mixture.parts().begin(), mixture.parts().end(),
+                       [&](const auto& share) { return plain_disperses(scene, point, share.material); });
+}
+
+Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point, float wavelength) noexcept {
     const MaterialId id = scene.scene.instances[point.instance].material;
     Bsdf out;
     out.ng = point.ng;
     if (!std::holds_alternative<MixMaterial>(scene.scene.materials[index(id)])) {
-        make_plain(scene, point, id, out);
+        make_plain(scene, point, id, wavelength, out);
         return out;
     }
     const Mixture mixture(scene, point, id);
     if (mixture.parts().size() == 1)
-        make_plain(scene, point, mixture.parts()[0].material, out);
+        make_plain(scene, point, mixture.parts()[0].material, wavelength, out);
     else
-        make_mix(scene, point, id, mixture, out);
+        make_mix(scene, point, id, mixture, wavelength, out);
     return out;
 }
 

@@ -53,6 +53,7 @@ struct RoughGlassBsdf {
     Microfacets facets{0.1f, 0.1f};            ///< not smooth
     const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
     const FilmOnDielectric* film = nullptr;    ///< if not null, says what is reflected
+    float index_place = 0;                     ///< where eta lies in the range of `energy`
 };
 struct ThinGlassBsdf {
     float eta = 1.5f;
@@ -119,7 +120,11 @@ struct BsdfSample {
     float radiance_scale = 1;  ///< the (η_i/η_t)² that is part of weight
 };
 
-Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point) noexcept;
+/// Whether the surface sends light of different wavelengths in different directions.
+bool disperses(const ShadingScene& scene, const SurfacePoint& point) noexcept;
+/// For light of a wavelength in micrometres, 0 where that is open: a surface that disperses then has the index of line
+/// d.
+Bsdf make_bsdf(const ShadingScene& scene, const SurfacePoint& point, float wavelength = 0) noexcept;
 /// All lobes are perfectly specular: light sampling is of no use.
 bool is_specular(const Bsdf& bsdf) noexcept;
 /// Light from behind the shading normal (seen from wo) brings nothing: choosing lights need not think of it.

@@ -9,7 +9,7 @@
 namespace steradian {
 namespace {
 
-constexpr int kLevels = 16, kAzimuths = 9, kPolar = 32;
+constexpr int kIndices = 4, kLevels = 16, kAzimuths = 9, kPolar = 32;
 constexpr int kPsiNodes = 12;  // for each quarter turn
 constexpr int kSlopeNodes = 64;
 
@@ -151,8 +151,9 @@ Microfacets microfacets(const Roughness& roughness, float texture) noexcept {
     return clamped(alphas(roughness, scale), roughness.squared ? scale : std::sqrt(scale));
 }
 
-MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness, int sides)
-    : sides_(sides),
+MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness, int sides, int indices)
+    : indices_(indices),
+      sides_(sides),
       levels_(roughness.texture ? kLevels : 1),
       azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths) {}
 
@@ -170,7 +171,13 @@ Vec2 MicrofacetEnergy::stretch(const Microfacets& m, Side side) const {
 
 template <class Albedo>
 void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo& albedo) {
-    loss_.reserve(size_t(sides_) * size_t(levels_) * size_t(azimuths_) * kPolar);
+    fill_losses(roughness, side, albedo);
+    fill_means(roughness, side, 0);
+}
+
+template <class Albedo>
+void MicrofacetEnergy::fill_losses(const Roughness& roughness, Side side, const Albedo& albedo) {
+    loss_.reserve(size_t(indices_) * size_t(sides_) * size_t(levels_) * size_t(azimuths_) * kPolar);
     for (int level = 0; level < levels_; ++level) {
         const Microfacets m = at_level(roughness, level);
         for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
@@ -183,7 +190,10 @@ void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo&
                 loss_.push_back(static_cast<float>(max_of(lost, 0.0)));
             }
     }
-    // The mean of what the table says, so that what is added to it makes it whole.
+}
+
+/// The mean of what the table says, so that what is added to it makes it whole.
+void MicrofacetEnergy::fill_means(const Roughness& roughness, Side side, float index) {
     for (int level = 0; level < levels_; ++level) {
         const Microfacets m = at_level(roughness, level);
         constexpr int kSteps = 256;
@@ -194,7 +204,7 @@ void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo&
                 const double mu = (i + 0.5) / kSteps, s = std::sqrt((1 - mu) * (1 + mu));
                 const double phi = std::numbers::pi / 2 * (j + 0.5) / turns;
                 const Vec3d w{s * math::cos(phi), s * math::sin(phi), mu};
-                sum += 2 * mu * loss(m, w, side) / (kSteps * turns);
+                sum += 2 * mu * loss(m, w, side, index) / (kSteps * turns);
             }
         mean_.push_back(static_cast<float>(sum));
     }
@@ -220,40 +230,52 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughnes
     return out;
 }
 
-std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Roughness& roughness, double eta) {
-    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 2));
-    out->dense_side_ = eta > 1 ? Side::inside : Side::outside;
-    for (const Side side : {Side::outside, Side::inside})
-        out->fill(roughness, side, [&](const Ggx& ggx, Vec3d o) {
-            return transmitting_albedo(ggx, o, side == Side::outside ? eta : 1 / eta);
-        });
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Roughness& roughness, IndexRange eta) {
+    const int indices = eta.first == eta.last ? 1 : kIndices;
+    const auto at = [&](int i) { return indices == 1 ? 0 : static_cast<double>(i) / (indices - 1); };
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 2, indices));
+    out->dense_side_ = eta.first > 1 ? Side::inside : Side::outside;
+    for (int i = 0; i < indices; ++i)
+        for (const Side side : {Side::outside, Side::inside}) {
+            const double n = eta.first + (eta.last - eta.first) * at(i);
+            out->fill_losses(roughness, side, [&](const Ggx& ggx, Vec3d o) {
+                return transmitting_albedo(ggx, o, side == Side::outside ? n : 1 / n);
+            });
+        }
+    for (int i = 0; i < indices; ++i)
+        for (const Side side : {Side::outside, Side::inside})
+            out->fill_means(roughness, side, static_cast<float>(at(i)));
     return out;
 }
 
-double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side) const noexcept {
+double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side, float index) const noexcept {
     if (m.smooth()) return 0;
     const Vec2 scale = stretch(m, side);
     const double x = scale.x * w.x, y = scale.y * w.y, z = w.z;
     const double across = x * x + y * y;
     const double q = across > 0 ? y * y / across : 0;
-    const Cubic l(m.level, levels_), a(polar_from_cosine(q), azimuths_),
+    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_), a(polar_from_cosine(q), azimuths_),
         p(polar_from_cosine(z / std::sqrt(across + z * z)), kPolar);
     double sum = 0;
-    for (int i = 0; i < l.count; ++i)
-        for (int j = 0; j < a.count; ++j) {
-            const float* row =
-                loss_.data() + ((int(side) * levels_ + l.first + i) * azimuths_ + a.first + j) * kPolar + p.first;
-            double inner = 0;
-            for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
-            sum += l.w[size_t(i)] * a.w[size_t(j)] * inner;
-        }
+    for (int n = 0; n < e.count; ++n)
+        for (int i = 0; i < l.count; ++i)
+            for (int j = 0; j < a.count; ++j) {
+                const int at = ((e.first + n) * sides_ + int(side)) * levels_ + l.first + i;
+                const float* row = loss_.data() + (at * azimuths_ + a.first + j) * kPolar + p.first;
+                double inner = 0;
+                for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
+                sum += e.w[size_t(n)] * l.w[size_t(i)] * a.w[size_t(j)] * inner;
+            }
     return clamp_to(sum, 0.0, 1.0);
 }
 
-double MicrofacetEnergy::mean_loss(const Microfacets& m, Side side) const noexcept {
-    const Cubic l(m.level, levels_);
+double MicrofacetEnergy::mean_loss(const Microfacets& m, Side side, float index) const noexcept {
+    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_);
     double sum = 0;
-    for (int i = 0; i < l.count; ++i) sum += l.w[size_t(i)] * mean_[size_t(int(side) * levels_ + l.first + i)];
+    for (int n = 0; n < e.count; ++n)
+        for (int i = 0; i < l.count; ++i)
+            sum += e.w[size_t(n)] * l.w[size_t(i)] *
+                   mean_[size_t(((e.first + n) * sides_ + int(side)) * levels_ + l.first + i)];
     return clamp_to(sum, 0.0, 1.0);
 }
 

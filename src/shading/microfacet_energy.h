@@ -30,6 +30,15 @@ struct Microfacets {
 /// The roughness where its texture, if it has one, is `texture`.
 Microfacets microfacets(const Roughness& roughness, float texture) noexcept;
 
+/// Of a dielectric, inside over outside; both ends are the same where the index does not depend on the wavelength.
+struct IndexRange {
+    double first = 1.5, last = 1.5;
+    /// Where an index lies: 0 … 1.
+    float place(double eta) const {
+        return first == last ? 0.0f : static_cast<float>(clamp_to((eta - first) / (last - first), 0.0, 1.0));
+    }
+};
+
 enum class Side : uint8_t { outside, inside };  ///< of a dielectric; metals have the first only
 
 /// For one material: over the direction, and where the roughness is a texture, over its values.
@@ -42,32 +51,35 @@ public:
     /// The same by any reflectance, of the cosine to the facet.
     static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness,
                                                            const std::function<double(double)>& reflectance);
-    /// Facets of a dielectric of index eta, inside over outside, that reflect and refract.
-    static std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& roughness, double eta);
+    /// Facets of a dielectric that reflect and refract.
+    static std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& roughness, IndexRange eta);
 
     /// The part of the light from w (unit, w.z >= 0) that does not leave after one bounce. Within about 1e-4, of
     /// dielectrics from the dense side 4e-3; with a grain of 1 to 16 within 1e-2, and 3e-2 less than 3 degrees above
-    /// the surface.
-    double loss(const Microfacets& m, Vec3d w, Side side = Side::outside) const noexcept;
+    /// the surface. `index`: where the index lies in its range, IndexRange::place.
+    double loss(const Microfacets& m, Vec3d w, Side side = Side::outside, float index = 0) const noexcept;
     /// Its mean over the hemisphere, weighted by the cosine.
-    double mean_loss(const Microfacets& m, Side side = Side::outside) const noexcept;
+    double mean_loss(const Microfacets& m, Side side = Side::outside, float index = 0) const noexcept;
 
 private:
-    MicrofacetEnergy(const Roughness& roughness, int sides);
+    MicrofacetEnergy(const Roughness& roughness, int sides, int indices = 1);
     template <class Albedo>
     void fill(const Roughness& roughness, Side side, const Albedo& albedo);
+    template <class Albedo>
+    void fill_losses(const Roughness& roughness, Side side, const Albedo& albedo);
+    void fill_means(const Roughness& roughness, Side side, float index);
     /// Of the space that the table of a side is over: along x and y.
     Vec2 stretch(const Microfacets& m, Side side) const;
     Microfacets at_level(const Roughness& roughness, int level) const;
 
-    // Axes: side, level, azimuth, polar angle. An axis with a single entry is constant.
-    int sides_ = 1, levels_ = 1, azimuths_ = 1;
+    // Axes: index, side, level, azimuth, polar angle. An axis with a single entry is constant.
+    int indices_ = 1, sides_ = 1, levels_ = 1, azimuths_ = 1;
     /// Of a dielectric: total reflection begins at one angle there, whatever the roughness, so that this side is
     /// tabulated over directions as they are. Other sides are in the space in which the roughness is 1 (ggx.h), where
     /// the loss changes at the same place whatever the roughness.
     std::optional<Side> dense_side_;
-    std::vector<float> loss_;  ///< [side][level][azimuth][polar]
-    std::vector<float> mean_;  ///< [side][level]
+    std::vector<float> loss_;  ///< [index][side][level][azimuth][polar]
+    std::vector<float> mean_;  ///< [index][side][level]
 };
 
 /// How the light that bounces between facets is sampled: uniform in azimuth, and in the cosine μ like μ / (μ² + α²),

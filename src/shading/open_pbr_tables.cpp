@@ -125,8 +125,9 @@ float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness, flo
     return static_cast<float>(r + (rougher - r) * m.coat_weight);
 }
 
-std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Roughness& r, double eta) {
-    auto& known = energy_[Key{kind, r.value.x, r.value.y, r.squared, r.texture.has_value(), eta}];
+std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Roughness& r, double eta,
+                                                             double last_eta) {
+    auto& known = energy_[Key{kind, r.value.x, r.value.y, r.squared, r.texture.has_value(), eta, last_eta}];
     if (known) return known;
     switch (kind) {
         case Kind::reflecting:
@@ -134,7 +135,7 @@ std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Ro
         case Kind::coating:
             return known = MicrofacetEnergy::coating(r, eta);
         case Kind::transmitting:
-            return known = MicrofacetEnergy::transmitting(r, eta);
+            return known = MicrofacetEnergy::transmitting(r, {eta, last_eta});
     }
     return known;
 }
@@ -191,6 +192,12 @@ SharedTables::Film film_of(const OpenPbrMaterial& m, const Roughness& base, doub
 
 }  // namespace
 
+/// The scale divides the Abbe number: 0 is no dispersion.
+double open_pbr_abbe(const OpenPbrMaterial& m) noexcept {
+    const double scale = m.transmission_dispersion_scale;
+    return scale > 0 ? m.transmission_dispersion_abbe_number / scale : 0;
+}
+
 OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& shared) {
     OpenPbrTables out;
     out.coat_textured = m.coat_weight > 0 && m.coat_roughness.texture;
@@ -208,7 +215,11 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     if (std::fabs(out.eta - 1) < 1e-3f) out.eta = 1.001f;  // nearer to 1 refraction is lost in the rounding to float
     out.metal = shared.reflecting(base);
     out.dielectric = shared.coating(base, out.eta_outside);
-    if (m.transmission_weight.value > 0 && !m.geometry_thin_walled) out.glass = shared.transmitting(base, out.eta);
+    out.glass_index = GlassIndex(out.eta, 0);
+    if (m.transmission_weight.value > 0 && !m.geometry_thin_walled) {
+        out.glass_index = GlassIndex(out.eta, open_pbr_abbe(m));
+        out.glass = shared.transmitting(base, out.glass_index.range());
+    }
     if (m.thin_film_weight > 0) out.film = shared.film(film_of(m, base, weighted, out));
     if (m.coat_weight > 0) {
         const Vec2 alpha = open_pbr_alpha(out.coat_textured ? 1 : m.coat_roughness.value, m.coat_roughness_anisotropy);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/vector.h"
+#include "shading/dispersion.h"
 #include "shading/microfacet_energy.h"
 #include "shading/thin_film.h"
 #include "steradian/scene.h"
@@ -53,6 +54,7 @@ struct OpenPbrTables {
     bool textured = false;                     ///< the tables of the base are over its roughness as well
     bool coat_textured = false;                ///< likewise
     float eta = 1.5f;                          ///< of the base as a body: inside over outside
+    GlassIndex glass_index;                    ///< the same by the wavelength
     double eta_outside = 1.5, coat_eta = 1.6;  ///< of reflections from outside
     double coat_normal_reflectance = 0, coat_inner_reflectance = 0;
     std::shared_ptr<const MicrofacetEnergy> metal, dielectric, glass;  ///< of the base; glass: where it transmits
@@ -73,8 +75,8 @@ public:
     std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& r, double eta) {
         return energy(Kind::coating, r, eta);
     }
-    std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& r, double eta) {
-        return energy(Kind::transmitting, r, eta);
+    std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& r, IndexRange eta) {
+        return energy(Kind::transmitting, r, eta.first, eta.last);
     }
     std::shared_ptr<const FuzzTable> fuzz(const FloatInput& roughness);
 
@@ -90,9 +92,9 @@ public:
 
 private:
     enum class Kind : uint8_t { reflecting, coating, transmitting };
-    std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const Roughness& r, double eta);
+    std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const Roughness& r, double eta, double last_eta = 0);
 
-    using Key = std::tuple<Kind, float, float, bool, bool, double>;
+    using Key = std::tuple<Kind, float, float, bool, bool, double, double>;
     std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
     std::map<std::pair<float, bool>, std::shared_ptr<const FuzzTable>> fuzz_;
     using FilmKey =

@@ -237,11 +237,18 @@ public:
             data().mean_fresnel = mean_fresnel_conductor(*complex);
     }
     void operator()(const GlassMaterial& m) {
+        data().glass = GlassIndex(m.eta, static_cast<double>(m.abbe));
+        data().disperses = data().glass.disperses();
         const bool visible = std::fabs(m.eta - 1) >= 1e-3f;  // nearer to 1 refraction is lost in the rounding to float
-        if (visible && m.roughness.value != Vec2{0, 0}) data().energy = shared_.transmitting(m.roughness, m.eta);
+        if (visible && m.roughness.value != Vec2{0, 0})
+            data().energy = shared_.transmitting(m.roughness, data().glass.range());
     }
     void operator()(const OpenPbrMaterial& m) {
         data().open_pbr = std::make_shared<const OpenPbrTables>(make_open_pbr_tables(m, shared_));
+        data().disperses = data().open_pbr->glass_index.disperses();
+    }
+    void operator()(const MixMaterial& m) {
+        data().disperses = scene_.materials[index(m.first)].disperses || scene_.materials[index(m.second)].disperses;
     }
     template <class Other>
     void operator()(const Other&) {}
@@ -329,6 +336,9 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
                 may_let_pass(material, [&](MaterialId id) { return out.materials[index(id)].cut_out; });
         }
         for (uint32_t i = 0; i < out.instances.size(); ++i) out.has_cut_outs = out.has_cut_outs || out.is_cut_out(i);
+        for (const Instance& instance : out.scene.instances)
+            if (out.materials[index(instance.material)].disperses && !out.wavelengths)
+                out.wavelengths = std::make_shared<const WavelengthSampler>();
         for (uint32_t i = 0; i < out.scene.reliefs.size(); ++i)
             out.materials[index(out.scene.reliefs[i].material)].relief = i;
         out.mip_maps = make_mip_maps(out.scene);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "math/transform.h"
+#include "shading/dispersion.h"
 #include "shading/light/emitter.h"
 #include "shading/light_selection.h"
 #include "steradian/result.h"
@@ -17,7 +18,6 @@ namespace steradian {
 
 struct OpenPbrTables;    // what the layers of such a material reflect, see open_pbr_tables.h
 struct MipMap;           // an image at lower resolutions, see mip_map.h
-class MicrofacetEnergy;  // what rough surfaces lose, see microfacet_energy.h
 class EnvironmentTable;  // the environment's radiance and its sampling distribution, see environment.h
 
 inline constexpr uint32_t kNoLight = 0xffffffffu;
@@ -68,6 +68,8 @@ struct ShadingScene {
         std::shared_ptr<const OpenPbrTables> open_pbr;
         uint32_t relief = kNoRelief;  ///< index into scene.reliefs
         bool cut_out = false;         ///< surfaces of it may let rays pass (opacity.h)
+        GlassIndex glass;             ///< of a GlassMaterial
+        bool disperses = false;       ///< surfaces of it may (bsdf.h)
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
 
@@ -82,6 +84,7 @@ struct ShadingScene {
     bool has_cut_outs = false;     ///< there is an instance of a material that is one
     bool is_cut_out(uint32_t instance) const { return materials[index(scene.instances[instance].material)].cut_out; }
     std::shared_ptr<const EnvironmentTable> environment;
+    std::shared_ptr<const WavelengthSampler> wavelengths;  ///< null where no instance disperses
 };
 
 /// The scene must have passed validate() (scene/validate.h). Fails with `resources` when memory runs out. Texels that

@@ -69,6 +69,23 @@ TEST_F(ReplayCommand, RepeatsTheFirefliesThatRenderNames) {
     EXPECT_GT(red, 0);
 }
 
+TEST_F(ReplayCommand, PrintsTheWavelengthWhereGlassDisperses) {
+    spit(folder_.file("glass.json"), R"({
+      "version": 1, "film": {"resolution": [8, 8]}, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
+      "objects": [{"type": "sphere", "radius": 1, "material": {"type": "glass", "abbe": 20}}],
+      "lights": [{"type": "environment"}]})");
+    const Outcome o = steradian({"replay", "glass.json", "--pixel", "4,4", "--sample", "0"});
+    ASSERT_EQ(o.code, 0) << o.err;
+    const std::string wavelength = line(o.out, "    wavelength ");
+    ASSERT_NE(wavelength, "") << o.out;
+    const double nanometres = std::stod(wavelength.substr(15));
+    EXPECT_TRUE(nanometres >= 390 && nanometres <= 680) << wavelength;
+    EXPECT_NE(wavelength.find(" nm, weight "), std::string::npos);
+    const Outcome none = steradian({"replay", "scene.json", "--pixel", "16,12", "--sample", "0"});
+    ASSERT_EQ(none.code, 0) << none.err;
+    EXPECT_EQ(line(none.out, "    wavelength "), "");
+}
+
 TEST_F(ReplayCommand, RefusesWhatIsNotThere) {
     const auto expect = [&](const std::vector<std::string>& arguments, const char* message) {
         const Outcome o = steradian(arguments);

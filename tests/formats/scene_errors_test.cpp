@@ -233,6 +233,9 @@ TEST(SceneErrors, Materials) {
     for (const char* eta : {"0", "-1", "1e9", "1e-9"})
         refused("\"materials\": {\"m\": {\"type\": \"glass\", \"eta\": §" + std::string(eta) + "}}",
                 "'eta' must be from 0.001 to 1000, got " + std::string(eta));
+    for (const char* abbe : {"0.5", "-20", "1e7"})
+        refused("\"materials\": {\"m\": {\"type\": \"glass\", \"abbe\": §" + std::string(abbe) + "}}",
+                "'abbe' must be from 1 to ");
     refused("\"materials\": {\"m\": {\"type\": \"refraction\", \"eta\": §0}}",
             "'eta' must be from 0.001 to 1000, got 0");
     refused("\"materials\": {\"m\": {\"type\": \"refraction\", §\"reflectance\": 1}}",

@@ -228,7 +228,8 @@ TEST(NativeScene, OpenPbr) {
                 "coat_weight": 0.17, "coat_color": 0.18, "coat_roughness": 0.19, "coat_roughness_anisotropy": 0.2,
                 "coat_ior": 1.21, "coat_darkening": 0.22, "geometry_opacity": 0.23, "subsurface_scatter_anisotropy": 0.24,
                 "thin_film_weight": 0.25, "thin_film_thickness": 0.26, "thin_film_ior": 1.27,
-                "emission_luminance": 0.28, "emission_color": 0.29, "geometry_thin_walled": true},
+                "emission_luminance": 0.28, "emission_color": 0.29, "transmission_dispersion_scale": 0.3,
+                "transmission_dispersion_abbe_number": 31, "geometry_thin_walled": true},
         "textured": {"type": "open_pbr", "base_color": "t", "specular_roughness": "t",
                      "specular_color": "t", "coat_roughness": "t", "fuzz_roughness": "t"}})"));
     const auto get = [&](size_t i) { return std::get<OpenPbrMaterial>(loaded.scene.materials[i]); };
@@ -236,6 +237,8 @@ TEST(NativeScene, OpenPbr) {
     EXPECT_EQ(plain.base_color.value, (Rgb{0.8f, 0.8f, 0.8f}));
     EXPECT_EQ(plain.specular_roughness.value, 0.3f);
     EXPECT_EQ(plain.coat_ior, 1.6f);
+    EXPECT_EQ(plain.transmission_dispersion_scale, 0);
+    EXPECT_EQ(plain.transmission_dispersion_abbe_number, 20);
     EXPECT_EQ(m.base_color.value, (Rgb{0.02f, 0, 1}));
     const float numbers[] = {m.base_weight,
                              m.base_color.value.r,
@@ -265,7 +268,9 @@ TEST(NativeScene, OpenPbr) {
                              m.thin_film_thickness,
                              m.thin_film_ior - 1,
                              m.emission_luminance,
-                             m.emission_color.value.r};
+                             m.emission_color.value.r,
+                             m.transmission_dispersion_scale,
+                             m.transmission_dispersion_abbe_number / 100};
     EXPECT_TRUE(m.geometry_thin_walled);
     EXPECT_FALSE(plain.geometry_thin_walled);
     for (size_t i = 0; i < std::size(numbers); ++i) EXPECT_NEAR(numbers[i], 0.01 * double(i + 1), 1e-6) << i;
@@ -280,8 +285,11 @@ TEST(NativeScene, OpenPbr) {
 TEST(NativeScene, RoughAndThinGlass) {
     const LoadedScene loaded = load_good(scene_with(R"("materials": {
         "frosted": {"type": "glass", "roughness": 0.4}, "clear": {"type": "glass"},
-        "pane": {"type": "thin_glass", "eta": 1.6, "transmittance": [0.9, 1, 0.8]}})"));
+        "pane": {"type": "thin_glass", "eta": 1.6, "transmittance": [0.9, 1, 0.8]},
+        "flint": {"type": "glass", "abbe": 30.5}, "ideal": {"type": "glass", "abbe": 0}})"));
     const auto& m = loaded.scene.materials;
+    EXPECT_EQ(std::get<GlassMaterial>(m[3]).abbe, 30.5f);
+    for (const size_t i : {0, 1, 4}) EXPECT_EQ(std::get<GlassMaterial>(m[i]).abbe, 0);
     EXPECT_EQ(std::get<GlassMaterial>(m[0]).roughness.value, (Vec2{0.4f, 0.4f}));
     EXPECT_EQ(std::get<GlassMaterial>(m[1]).roughness.value, (Vec2{0, 0}));
     EXPECT_EQ(std::get<ThinGlassMaterial>(m[2]).eta, 1.6f);

@@ -306,6 +306,27 @@ TEST(GltfMaterial, IridescenceIsAThinFilm) {
         EXPECT_TRUE(has(beyond.fidelity, said)) << said;
 }
 
+/// 20 over the Abbe number; of bodies only.
+TEST(GltfMaterial, DispersionIsAnAbbeNumber) {
+    const auto with = [](const std::string& dispersion, const std::string& roughness, double thickness) {
+        return with_material("\"pbrMetallicRoughness\": {\"metallicFactor\": 0, \"roughnessFactor\": " + roughness +
+                             "}, \"extensions\": {\"KHR_materials_transmission\": {\"transmissionFactor\": 1}, "
+                             "\"KHR_materials_volume\": {\"thicknessFactor\": " +
+                             std::to_string(thickness) + "}, \"KHR_materials_dispersion\": {" + dispersion + "}}");
+    };
+    const auto layered = material_of<OpenPbrMaterial>(with("\"dispersion\": 0.5", "0.4", 1));
+    EXPECT_EQ(layered.transmission_dispersion_scale, 1);
+    EXPECT_EQ(layered.transmission_dispersion_abbe_number, 40);
+    EXPECT_EQ(material_of<GlassMaterial>(with("\"dispersion\": 0.5", "0", 1)).abbe, 40);
+    EXPECT_EQ(material_of<GlassMaterial>(with("", "0", 1)).abbe, 0);
+    EXPECT_EQ(material_of<OpenPbrMaterial>(with("", "0.4", 1)).transmission_dispersion_scale, 0);
+    EXPECT_EQ(material_of<OpenPbrMaterial>(with("\"dispersion\": 0.5", "0.4", 0)).transmission_dispersion_scale, 0);
+    const LoadedScene beyond = with("\"dispersion\": 1e3", "0", 1);
+    EXPECT_EQ(material_of<GlassMaterial>(beyond).abbe, 1);
+    EXPECT_TRUE(has(beyond.fidelity, "a dispersion of more than 20"));
+    EXPECT_FALSE(has(with("\"dispersion\": 20", "0", 1).fidelity, "dispersion"));
+}
+
 TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
     const std::string start = "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0, \"metallicFactor\": ";
     EXPECT_EQ(material_of<ConductorMaterial>(with_material(start + "1}")).roughness.value, (Vec2{0, 0}));

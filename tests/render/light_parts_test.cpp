@@ -41,6 +41,7 @@ Scene every_material() {
                                     DiffuseTransmissionMaterial{texture, texture}};
     GlassMaterial frosted;
     frosted.roughness.value = {0.3f, 0.3f};
+    frosted.abbe = 10;
     ConductorMaterial metal, mirror;
     metal.reflectance = mirror.reflectance = SchlickReflectance{texture, {1, 1, 1}};
     metal.roughness.value = {0.4f, 0.4f};
@@ -49,6 +50,7 @@ Scene every_material() {
     layered.coat_weight = 0.6f;
     layered.base_metalness.value = 0.3f;
     layered.transmission_weight.value = 0.4f;
+    layered.transmission_dispersion_scale = 1;
     layered.base_diffuse_roughness = 0.5f;
     ghost.geometry_opacity.value = 0.4f;
     for (const Material& m : {Material(frosted), Material(metal), Material(mirror), Material(layered), Material(ghost)})

@@ -113,6 +113,51 @@ TEST(Replay, TracesAddUp) {
     EXPECT_GT(roulette, 50u);
 }
 
+/// At most one on a path, where it meets the glass ball for the first time, and all adds up with its colour.
+TEST(Replay, TellsTheWavelength) {
+    Scene s = test::everything_scene();
+    for (Material& material : s.materials)
+        if (auto* glass = std::get_if<GlassMaterial>(&material)) glass->abbe = 10;
+    const auto scene = prepared(std::move(s));
+    size_t chosen = 0, later = 0;
+    for (const IntegratorKind integrator : {IntegratorKind::path, IntegratorKind::direct}) {
+        RenderSettings settings = small();
+        settings.integrator = integrator;
+        const Image image = run(scene, settings).image;
+        for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+            double red = 0;
+            for (uint64_t i = 0; i < kSamples; ++i) {
+                const SampleTrace t = trace(scene, settings, pixel % kWidth, pixel / kWidth, i);
+                red += double(t.radiance.r) * double(t.filter_weight);
+                Rgb throughput{1, 1, 1}, sum;
+                bool has = false;
+                for (const TracedVertex& v : t.vertices) {
+                    ASSERT_EQ(v.throughput, throughput);
+                    if (v.wavelength > 0) {
+                        ASSERT_FALSE(has);
+                        ASSERT_EQ(v.instance, 2u);
+                        ASSERT_TRUE(v.wavelength >= 390 && v.wavelength <= 680);
+                        ASSERT_NEAR(v.wavelength_weight.r + v.wavelength_weight.g + v.wavelength_weight.b, 3, 1e-6);
+                        throughput = throughput * v.wavelength_weight;
+                        later += &v != &t.vertices.front();
+                        ++chosen;
+                        has = true;
+                    }
+                    ASSERT_TRUE(has || v.escaped || v.instance != 2 || !v.bounce);
+                    sum = sum + v.contribution;
+                    for (const TracedLight& l : v.lights)
+                        if (l.shadow_ray && !l.occluded) sum = sum + l.contribution;
+                    if (v.bounce) throughput = throughput * v.bounce->weight / v.bounce->survival;
+                }
+                ASSERT_EQ(sum, t.radiance);
+            }
+            ASSERT_EQ(static_cast<float>(red / kSamples), image.pixels[size_t(pixel) * 3]);
+        }
+    }
+    EXPECT_GT(chosen, 20u);
+    EXPECT_GT(later, 2u);
+}
+
 /// The weights of the two ways to find a direction: squares of density times number of samples, and they sum to one.
 TEST(Replay, WeightsAreThePowerHeuristic) {
     const auto scene = prepared(test::everything_scene());

@@ -90,6 +90,13 @@ std::vector<Change> changes() {
         [](Scene& s) { open_pbr(s).specular_roughness_anisotropy = 1; },
         [](Scene& s) { open_pbr(s).transmission_weight.value = 1; },
         [](Scene& s) { open_pbr(s).transmission_color.value.r = 0; },
+        [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).abbe = 30; },
+        [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).abbe = 60; },
+        [](Scene& s) { open_pbr(s).transmission_dispersion_scale = 1; },
+        [](Scene& s) {
+            open_pbr(s).transmission_dispersion_scale = 1;
+            open_pbr(s).transmission_dispersion_abbe_number = 30;
+        },
         [](Scene& s) { open_pbr(s).subsurface_weight.value = 1; },
         [](Scene& s) { open_pbr(s).subsurface_color.value.r = 0; },
         [](Scene& s) { open_pbr(s).fuzz_weight.value = 1; },

@@ -187,6 +187,26 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"singular or not finite", [](Scene& s) { s.instances[0].world_from_object = translation(kNan, 0, 0); }},
         Fault{"eta must be between", [](Scene& s) { s.materials.push_back(GlassMaterial{0}); }},
         Fault{"eta must be between", [](Scene& s) { s.materials.push_back(RefractionMaterial{-1}); }},
+        Fault{"Abbe number must be at least 1",
+              [](Scene& s) {
+                  s.materials.push_back(GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}, {}, 0.5f});
+              }},
+        Fault{"Abbe number must be at least 1",
+              [](Scene& s) {
+                  s.materials.push_back(GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}, {}, float(kNan)});
+              }},
+        Fault{"transmission_dispersion_abbe_number must be at least 1",
+              [](Scene& s) {
+                  OpenPbrMaterial m;
+                  m.transmission_dispersion_abbe_number = 0;
+                  s.materials.push_back(m);
+              }},
+        Fault{"transmission_dispersion_scale must be",
+              [](Scene& s) {
+                  OpenPbrMaterial m;
+                  m.transmission_dispersion_scale = 1.5f;
+                  s.materials.push_back(m);
+              }},
         Fault{"not negative",
               [](Scene& s) {
                   s.textures[0] = ConstantTexture{{-1, 0, 0}};

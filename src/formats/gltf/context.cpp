@@ -10,11 +10,12 @@ namespace steradian::gltf {
 namespace {
 
 /// What can be required of us: all of it is honoured, or reported where it is not.
-constexpr std::array<std::string_view, 19> kExtensions{"KHR_draco_mesh_compression",
+constexpr std::array<std::string_view, 20> kExtensions{"KHR_draco_mesh_compression",
                                                        "KHR_lights_punctual",
                                                        "KHR_materials_anisotropy",
                                                        "KHR_materials_clearcoat",
                                                        "KHR_materials_diffuse_transmission",
+                                                       "KHR_materials_dispersion",
                                                        "KHR_materials_emissive_strength",
                                                        "KHR_materials_ior",
                                                        "KHR_materials_iridescence",

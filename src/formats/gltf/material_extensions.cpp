@@ -46,6 +46,18 @@ void Materials::read_transmission(const Object& material, Reading& r) {
             static_cast<float>(math::pow(static_cast<double>(color[c]), thickness / (2 * distance)));
 }
 
+/// The extension's number is 20 over the Abbe number. Thin sheets do not refract, so they do not disperse either.
+void Materials::read_dispersion(const Object& dispersion, Reading& r) {
+    constexpr double kMost = 20;
+    const double value = dispersion.number_or("dispersion", 0, kNotNegative);
+    if (value == 0 || !r.solid) return;
+    if (value > kMost)
+        context_.not_honoured("a dispersion of more than 20, an Abbe number below 1, is taken as 20",
+                              dispersion.offset_of("dispersion"));
+    r.surface.transmission_dispersion_scale = 1;
+    r.surface.transmission_dispersion_abbe_number = static_cast<float>(20 / min_of(value, kMost));
+}
+
 /// The reflectance at normal incidence is that of the index times factor and colour. Where there is metal, of which the
 /// extension does not speak, the index says it all.
 void Materials::read_specular(const Object& material, Reading& r) {
@@ -193,6 +205,7 @@ void Materials::read_extensions(const Object& material, Reading& r) {
     }
     read_specular(material, r);
     read_transmission(material, r);
+    if (const auto dispersion = material.extension("KHR_materials_dispersion")) read_dispersion(*dispersion, r);
     if (const auto coat = material.extension("KHR_materials_clearcoat")) read_clearcoat(*coat, r);
     if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
     if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);

@@ -131,7 +131,10 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
     const bool all_glass = s.transmission_weight.value == 1 && !s.transmission_weight.texture;
     if (all_glass && smooth && !s.base_color.texture && s.specular_weight == 1 && !s.specular_color.texture) {
         const Rgb tint = s.transmission_color.value;
-        if (r.solid) return GlassMaterial{s.specular_ior, s.specular_color.value, tint};
+        if (r.solid) {
+            const float abbe = s.transmission_dispersion_scale > 0 ? s.transmission_dispersion_abbe_number : 0;
+            return GlassMaterial{s.specular_ior, s.specular_color.value, tint, {}, abbe};
+        }
         if (is_white(s.specular_color.value)) return ThinGlassMaterial{s.specular_ior, tint};
     }
     if (s.specular_weight == 0 && s.transmission_weight.value == 0 && s.subsurface_weight.value == 0)

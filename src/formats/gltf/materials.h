@@ -76,6 +76,7 @@ private:
     // material_extensions.cpp, each by its extension.
     void read_extensions(const Object& material, Reading& r);
     void read_transmission(const Object& material, Reading& r);
+    void read_dispersion(const Object& dispersion, Reading& r);
     void read_specular(const Object& material, Reading& r);
     void read_diffuse_transmission(const Object& material, Reading& r);
     void read_clearcoat(const Object& clearcoat, Reading& r);

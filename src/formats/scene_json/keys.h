@@ -34,8 +34,8 @@ inline constexpr Key kVertexColorTexture[] = {"type"};
 
 inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided", "roughness", "normal_map", "bump_map"};
 inline constexpr Key kRefraction[] = {"type", "eta", "normal_map", "bump_map"};
-inline constexpr Key kGlass[] = {"type",      "eta",   "reflectance", "transmittance",
-                                 "roughness", "alpha", "normal_map",  "bump_map"};
+inline constexpr Key kGlass[] = {"type",  "eta",  "reflectance", "transmittance", "roughness",
+                                 "alpha", "abbe", "normal_map",  "bump_map"};
 inline constexpr Key kMirror[] = {"type", "reflectance", "normal_map", "bump_map"};
 inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance", "normal_map", "bump_map"};
 inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance", "normal_map", "bump_map"};
@@ -51,6 +51,8 @@ inline constexpr Key kOpenPbr[] = {"type",
                                    "specular_roughness_anisotropy",
                                    "transmission_weight",
                                    "transmission_color",
+                                   "transmission_dispersion_scale",
+                                   "transmission_dispersion_abbe_number",
                                    "subsurface_weight",
                                    "subsurface_color",
                                    "subsurface_scatter_anisotropy",

@@ -38,6 +38,8 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("specular_roughness_anisotropy", m.specular_roughness_anisotropy);
     input("transmission_weight", m.transmission_weight);
     input("transmission_color", m.transmission_color);
+    number("transmission_dispersion_scale", m.transmission_dispersion_scale);
+    number("transmission_dispersion_abbe_number", m.transmission_dispersion_abbe_number, {1, 1e6});
     input("subsurface_weight", m.subsurface_weight);
     input("subsurface_color", m.subsurface_color);
     number("subsurface_scatter_anisotropy", m.subsurface_scatter_anisotropy, {-1, 1});

@@ -6,6 +6,15 @@ namespace {
 constexpr Range kTextureScale{-1e6, 1e6};
 constexpr Range kUnit{0, 1};
 
+constexpr Range kAbbe{1, 1e6};
+
+/// 0 stands for no dispersion.
+float read_abbe(ObjectReader& material) {
+    const auto value = material.find("abbe");
+    const bool none = !value || (value->is(Kind::number) && value->number() == 0);
+    return none ? 0 : material.number_or("abbe", 0, kAbbe);
+}
+
 std::string with_name(std::string_view what, const std::string& name) {
     return name.empty() ? std::string(what) : std::string(what) + " " + quoted(name);
 }
@@ -206,6 +215,7 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
             glass.reflectance = tint("reflectance");
             glass.transmittance = tint("transmittance");
             glass.roughness = read_roughness(reader);
+            glass.abbe = read_abbe(reader);
             material = glass;
             break;
         }

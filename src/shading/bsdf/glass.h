@@ -7,15 +7,21 @@
 namespace steradian {
 
 inline PlainLobe make_lobe(const GlassMaterial& material, const LobeContext& context) {
+    const float eta = context.material.glass.at(context.wavelength);
     if (context.material.energy) {
         const Roughness& roughness = material.roughness;
         const auto read = [&](TextureId id) { return eval_texture(context.scene, id, context.point).r; };
         const Microfacets facets = microfacets(roughness, roughness.texture ? read(*roughness.texture) : 1);
         if (!facets.smooth())
-            return RoughGlassBsdf{material.eta, material.reflectance, material.transmittance, facets,
-                                  context.material.energy.get()};
+            return RoughGlassBsdf{eta,
+                                  material.reflectance,
+                                  material.transmittance,
+                                  facets,
+                                  context.material.energy.get(),
+                                  nullptr,
+                                  context.material.glass.range().place(eta)};
     }
-    return GlassBsdf{material.eta, material.reflectance, material.transmittance};
+    return GlassBsdf{eta, material.reflectance, material.transmittance};
 }
 
 inline bool lobe_is_specular(const GlassBsdf&) { return true; }

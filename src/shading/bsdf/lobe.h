@@ -18,6 +18,7 @@ struct LobeContext {
     const ShadingScene& scene;
     const SurfacePoint& point;
     const ShadingScene::MaterialData& material;
+    float wavelength = 0;  ///< as in make_bsdf
 };
 
 /// Whether it matters how the lobe is turned about the normal.

@@ -78,8 +78,14 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     out.specular_color = color(m.specular_color);
     out.metal = open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get());
     out.transmission = number(m.transmission_weight);
-    out.glass = {tables.eta, out.specular_color, color(m.transmission_color),
-                 facets,     tables.glass.get(), tables.film.glass.get()};
+    const float eta = tables.glass_index.at(context.wavelength);
+    out.glass = {eta,
+                 out.specular_color,
+                 color(m.transmission_color),
+                 facets,
+                 tables.glass.get(),
+                 tables.film.glass.get(),
+                 tables.glass_index.range().place(eta)};
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
     out.subsurface = number(m.subsurface_weight);

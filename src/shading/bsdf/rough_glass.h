@@ -59,12 +59,12 @@ inline RoughGlassLosses losses(const RoughGlassBsdf& lobe, Vec3d wo, bool outsid
     out.eta = outside ? lobe.eta : 1 / static_cast<double>(lobe.eta);
     if (!outside) std::swap(out.near_side, out.far_side);
     if (!lobe.energy) return out;
-    out.near = lobe.energy->mean_loss(lobe.facets, out.near_side);
-    out.far = lobe.energy->mean_loss(lobe.facets, out.far_side);
+    out.near = lobe.energy->mean_loss(lobe.facets, out.near_side, lobe.index_place);
+    out.far = lobe.energy->mean_loss(lobe.facets, out.far_side, lobe.index_place);
     const double sum = out.near + out.eta * out.eta * out.far;
     if (!(out.near > 0 && out.far > 0 && sum > 0)) return out;
     out.reflected_share = out.near / sum;
-    out.lost = lobe.energy->loss(lobe.facets, wo, out.near_side);
+    out.lost = lobe.energy->loss(lobe.facets, wo, out.near_side, lobe.index_place);
     return out;
 }
 
@@ -106,7 +106,7 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         const double cosine = std::fabs(wi.z);
         const Side side = reflected ? l.near_side : l.far_side;
         const double from_wi =
-            lobe.energy->loss(lobe.facets, {wi.x, wi.y, cosine}, side) / (reflected ? l.near : l.far);
+            lobe.energy->loss(lobe.facets, {wi.x, wi.y, cosine}, side, lobe.index_place) / (reflected ? l.near : l.far);
         f_cos += l.lost * share * from_wi * cosine / std::numbers::pi;
         pdf += l.lost * share * WideLobe(lobe.facets).pdf(cosine);
     }
