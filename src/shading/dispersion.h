@@ -9,9 +9,9 @@ namespace steradian {
 /// Fraunhofer's lines F, d and C in micrometres, as OpenPBR Surface 1.1 has them.
 inline constexpr double kLineF = 0.48613, kLineD = 0.58756, kLineC = 0.65627;
 
-/// Cauchy's formula with two terms, n(λ) = A + B / λ², by the index at line d and the Abbe number V = (n_d - 1) / (n_F -
-/// n_C), at least 1 (OpenPBR Surface 1.1, section "Dispersion"). An index below 1 is that of a bubble in such a glass:
-/// the glass disperses, and the index is 1 / n(λ). What is within 3e-3 of 1 does not disperse.
+/// Cauchy's formula with two terms, n(λ) = A + B / λ², by the index at line d and the Abbe number V = (n_d - 1) / (n_F
+/// - n_C), at least 1 (OpenPBR Surface 1.1, section "Dispersion"). An index below 1 is that of a bubble in such a
+/// glass: the glass disperses, and the index is 1 / n(λ). What is within 3e-3 of 1 does not disperse.
 class GlassIndex {
 public:
     GlassIndex() = default;

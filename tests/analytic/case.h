@@ -53,6 +53,7 @@ std::vector<Case> environment_cases();
 std::vector<Case> sun_cases();
 std::vector<Case> goniometric_cases();
 std::vector<Case> specular_cases();
+std::vector<Case> dispersion_cases();
 std::vector<Case> path_cases();
 std::vector<Case> opacity_cases();
 std::vector<Case> emission_cases();

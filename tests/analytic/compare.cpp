@@ -41,9 +41,10 @@ struct Comparison {
     size_t noisy = 0, bright = 0;
 };
 
-Comparison compare(const PreparedCase& scene, const RenderSettings& first, const RenderSettings& second) {
+Comparison compare(const PreparedCase& scene, const RenderSettings& first, const PreparedCase& other,
+                   const RenderSettings& second) {
     const uint32_t seeds = test::by_tier(32u, 128u);
-    const Moments a = moments(scene, first, 100, seeds), b = moments(scene, second, 10100, seeds);
+    const Moments a = moments(scene, first, 100, seeds), b = moments(other, second, 10100, seeds);
     const size_t numbers = a.sum.size();
     // Welch's t has at least seeds - 1 degrees of freedom.
     const double allowed = 1 - std::pow(1 - 0.001, 1.0 / static_cast<double>(numbers));
@@ -66,7 +67,12 @@ Comparison compare(const PreparedCase& scene, const RenderSettings& first, const
 }  // namespace
 
 void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b) {
-    const Comparison c = compare(scene, a, b);
+    expect_same_means(scene, a, scene, b);
+}
+
+void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const PreparedCase& other,
+                       const RenderSettings& b) {
+    const Comparison c = compare(scene, a, other, b);
     for (const size_t i : c.different)
         ADD_FAILURE() << "pixel " << i / 3 % a.width << ", " << i / 3 / a.width << " channel " << i % 3;
     EXPECT_GT(c.noisy, c.bright / 2);
@@ -74,7 +80,12 @@ void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const
 }
 
 size_t different_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b) {
-    return compare(scene, a, b).different.size();
+    return different_means(scene, a, scene, b);
+}
+
+size_t different_means(const PreparedCase& scene, const RenderSettings& a, const PreparedCase& other,
+                       const RenderSettings& b) {
+    return compare(scene, a, other, b).different.size();
 }
 
 }  // namespace steradian::analytic

@@ -9,8 +9,13 @@ namespace steradian::analytic {
 /// a false alarm anywhere is 1 in 1000, by Šidák's correction. Both must be noisy in most pixels where they are not
 /// black, so that it is a comparison of noise.
 void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b);
+/// The same for two scenes, with pictures of one size.
+void expect_same_means(const PreparedCase& scene, const RenderSettings& a, const PreparedCase& other,
+                       const RenderSettings& b);
 
 /// How many pixels and channels of the two differ by such a test.
+size_t different_means(const PreparedCase& scene, const RenderSettings& a, const PreparedCase& other,
+                       const RenderSettings& b);
 size_t different_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b);
 
 }  // namespace steradian::analytic

@@ -86,6 +86,55 @@ double fresnel(double cos_incident, double eta) {
     return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
+double cauchy_index(double n_d, double abbe, double nanometres) {
+    const auto inverse_square = [](double x) { return 1 / (x * x); };
+    const double b = (n_d - 1) / abbe / (inverse_square(486.13) - inverse_square(656.27));
+    return n_d - b * inverse_square(587.56) + b * inverse_square(nanometres);
+}
+
+namespace {
+
+Color positive_response(double nm) {
+    const auto lobe = [&](double height, double middle, double left, double right) {
+        return height * std::exp(-0.5 * std::pow((nm - middle) / (nm < middle ? left : right), 2));
+    };
+    const double x = lobe(1.056, 599.8, 37.9, 31.0) + lobe(0.362, 442.0, 16.0, 26.7) - lobe(0.065, 501.1, 20.4, 26.2);
+    const double y = lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1);
+    const double z = lobe(1.217, 437.0, 11.8, 36.0) + lobe(0.681, 459.0, 26.0, 13.8);
+    return {std::max(0.0, 3.2406 * x - 1.5372 * y - 0.4986 * z), std::max(0.0, -0.9689 * x + 1.8758 * y + 0.0415 * z),
+            std::max(0.0, 0.0557 * x - 0.2040 * y + 1.0570 * z)};
+}
+
+/// The curves have kinks: panels are narrow.
+Color integrate_responses(const std::function<double(double)>& f, double from, double to) {
+    const auto channel = [&](int c) {
+        return integrate([&](double nm) { return f(nm) * positive_response(nm)[c]; }, from, to, 2048);
+    };
+    return {channel(0), channel(1), channel(2)};
+}
+
+Color whole_response() {
+    static const Color whole = integrate_responses([](double) { return 1.0; }, 390, 680);
+    return whole;
+}
+
+}  // namespace
+
+Color integrate_colors(const std::function<double(double)>& f, double from, double to) {
+    const Color c = integrate_responses(f, from, to), whole = whole_response();
+    return {c.r / whole.r, c.g / whole.g, c.b / whole.b};
+}
+
+PrismRay through_prism(double apex, double incident, double eta) {
+    PrismRay out;
+    out.inside = std::asin(std::sin(incident) / eta);
+    const double second = apex - out.inside;
+    out.leaves = std::asin(eta * std::sin(second));
+    out.deviated = incident + out.leaves - apex;
+    out.passed = (1 - fresnel(std::cos(incident), eta)) * (1 - fresnel(std::cos(second), 1 / eta));
+    return out;
+}
+
 double glass_sphere_radiance(double cos_incident, double eta, int depth) {
     const double r = fresnel(cos_incident, eta);
     return depth < 1 ? 0 : 1 - (1 - r) * std::pow(r, depth - 1);

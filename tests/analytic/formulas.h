@@ -78,6 +78,22 @@ double overhead_ellipsoid_form_factor(double a, double b, double h);
 
 /// Fresnel's equations, unpolarised; eta is transmitted over incident index. 1 beyond the critical angle.
 double fresnel(double cos_incident, double eta);
+/// The index at a wavelength in nanometres by Cauchy's formula, n = A + B / λ², that is n_d at 587.56 nm and has the
+/// Abbe number (n_d - 1) / (n_F - n_C), F and C at 486.13 and 656.27 nm.
+double cauchy_index(double n_d, double abbe, double nanometres);
+/// ∫ f(λ) w(λ) dλ for red, green and blue from one wavelength in nanometres to another, within 390 to 680. w is what
+/// white light of a wavelength gives linear Rec. 709 by the fits of Wyman, Sloan and Shirley (2013) to the colour
+/// matching functions of CIE 1931, where that is above 0, over its integral: f = 1 is white.
+Color integrate_colors(const std::function<double(double)>& f, double from = 390, double to = 680);
+/// A ray through two faces of a prism of apex angle `apex`, in a plane across its edge; angles in radians.
+struct PrismRay {
+    double inside = 0;    ///< angle to the normal of the first face, within
+    double leaves = 0;    ///< angle to the normal of the second face, outside; away from the apex
+    double deviated = 0;  ///< by which the ray has turned towards the base
+    double passed = 0;    ///< share of it, by Fresnel's equations
+};
+/// At a first face that is met at the angle `incident`, on the side of the base.
+PrismRay through_prism(double apex, double incident, double eta);
 /// What a camera ray sees of a surrounding white sky through a glass sphere when the path may have `depth` bounces: the
 /// first meets the sphere from outside, each further one from inside, all with the same reflectance R:
 /// R + (1 - R) Σ_{k=0}^{depth-2} (1 - R) R^k = 1 - (1 - R) R^(depth-1).

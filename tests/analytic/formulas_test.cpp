@@ -42,6 +42,42 @@ TEST(Formulas, RectanglesAgreeWithPolygonsAndQuadrature) {
                 polygon_form_factor(wall, {}, kUp), 1e-9);
 }
 
+/// Snell's law for directions: the part along the face grows by the ratio of the indices.
+V3 refracted(V3 d, V3 normal, double eta) {
+    const double cosine = -dot(d, normal);
+    const V3 along = (d + normal * cosine) * (1 / eta);
+    return along - normal * std::sqrt(1 - dot(along, along));
+}
+
+TEST(Formulas, PrismsRefractAsDirectionsDo) {
+    const double apex = radians(50), incident = radians(40), eta = 1.6;
+    const V3 first{-std::cos(apex / 2), std::sin(apex / 2), 0}, second{std::cos(apex / 2), std::sin(apex / 2), 0};
+    const double angle = incident - apex / 2;
+    const V3 d{std::cos(angle), std::sin(angle), 0};
+    const V3 within = refracted(d, first, eta), out = refracted(within, second * -1, 1 / eta);
+    const PrismRay ray = through_prism(apex, incident, eta);
+    EXPECT_NEAR(-dot(within, first), std::cos(ray.inside), 1e-14);
+    EXPECT_NEAR(dot(out, second), std::cos(ray.leaves), 1e-14);
+    EXPECT_NEAR(std::acos(dot(out, d)), ray.deviated, 1e-12);
+    EXPECT_LT(out.y, d.y);  // towards the base
+    // At the least deviation both sides are alike, and sin((A + δ) / 2) = n sin(A / 2).
+    const PrismRay least = through_prism(apex, std::asin(eta * std::sin(apex / 2)), eta);
+    EXPECT_NEAR(std::sin((apex + least.deviated) / 2), eta * std::sin(apex / 2), 1e-14);
+    EXPECT_LT(least.deviated, ray.deviated);
+}
+
+TEST(Formulas, ColorsOfTheSpectrumAreWhiteTogether) {
+    const auto one = [](double) { return 1.0; };
+    const Color all = integrate_colors(one), low = integrate_colors(one, 390, 541),
+                high = integrate_colors(one, 541, 680);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(all[c], 1, 1e-12);
+        EXPECT_NEAR(low[c] + high[c], 1, 1e-7);  // the kinks do not lie where the panels end
+    }
+    EXPECT_NEAR((cauchy_index(1.5, 30, 486.13) - cauchy_index(1.5, 30, 656.27)) * 30, 0.5, 1e-14);
+    EXPECT_NEAR(cauchy_index(1.5, 30, 587.56), 1.5, 1e-15);
+}
+
 TEST(Formulas, PolygonsAreClippedAtTheHorizon) {
     const std::vector<V3> wall{{2, 0, 0}, {2, 0, 1}, {2, 3, 1}, {2, 3, 0}};
     const std::vector<V3> sunk{{2, -5, 0}, {2, -5, 1}, {2, 3, 1}, {2, 3, 0}};

@@ -279,9 +279,7 @@ TEST(DispersiveGlass, KnowsWhereItDisperses) {
 /// Transmission that a texture leaves out somewhere does not cost a wavelength there.
 TEST(DispersiveGlass, ATextureDecidesForEachPoint) {
     Scene scene;
-    const auto level = [&](float v) {
-        return add<TextureId>(scene.textures, Texture{ConstantTexture{{v, v, v}}});
-    };
+    const auto level = [&](float v) { return add<TextureId>(scene.textures, Texture{ConstantTexture{{v, v, v}}}); };
     const TextureId none = level(0), half = level(0.5f);
     for (const TextureId texture : {none, half}) {
         OpenPbrMaterial m = layered_glass(1.5f, 20);
