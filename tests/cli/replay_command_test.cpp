@@ -73,7 +73,7 @@ TEST_F(ReplayCommand, PrintsTheWavelengthWhereGlassDisperses) {
     spit(folder_.file("glass.json"), R"({
       "version": 1, "film": {"resolution": [8, 8]}, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
       "objects": [{"type": "sphere", "radius": 1, "material": {"type": "glass", "abbe": 20}}],
-      "lights": [{"type": "environment"}]})");
+      "lights": [{"type": "environment", "radiance": 1}]})");
     const Outcome o = steradian({"replay", "glass.json", "--pixel", "4,4", "--sample", "0"});
     ASSERT_EQ(o.code, 0) << o.err;
     const std::string wavelength = line(o.out, "    wavelength ");
