@@ -49,16 +49,18 @@ void add_prism(std::vector<Case>& out) {
         out.push_back(noisy(whole(std::string("prism_all_by_") + integrator, formula + ", R by Fresnel and Cauchy",
                                   prism.scene(-6, 6, dispersive(), light).integrator(integrator),
                                   times(integrate_colors(passed), light))));
-    // Longer waves are bent less: they arrive higher.
-    for (const int nm : {470, 520, 580}) {
-        const std::string edge = std::to_string(nm);
-        out.push_back(noisy(whole("prism_above_" + edge, formula + " of what Snell's law takes above " + edge + " nm",
-                                  prism.scene(prism.height(nm), 6, dispersive(), light),
-                                  times(integrate_colors(passed, nm, 680), light))));
-        out.push_back(noisy(whole("prism_below_" + edge, formula + " of what Snell's law takes below " + edge + " nm",
-                                  prism.scene(-6, prism.height(nm), dispersive(), light).integrator("path"),
-                                  times(integrate_colors(passed, 390, nm), light))));
-    }
+    // Longer waves are bent less: they arrive higher. Each band gives a channel a good part of its light, or none.
+    const auto band = [&](const std::string& name, int from, int to, const char* integrator) {
+        const double bottom = from > 390 ? prism.height(from) : -6, top = to < 680 ? prism.height(to) : 6;
+        out.push_back(
+            noisy(whole("prism_" + name,
+                        formula + " from " + std::to_string(from) + " to " + std::to_string(to) + " nm, by Snell's law",
+                        prism.scene(bottom, top, dispersive(), light).integrator(integrator),
+                        times(integrate_colors(passed, from, to), light))));
+    };
+    band("long_waves", 580, 680, "direct");
+    band("middle_waves", 480, 540, "path");
+    band("short_waves", 390, 500, "path");
     // Of glass that does not disperse, all goes where light of 587.56 nm does.
     const double d = prism.height(587.56);
     out.push_back(
