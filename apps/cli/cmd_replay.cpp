@@ -33,10 +33,13 @@ std::string outcome(const TracedLight& l) {
 void print_surface(const TracedVertex& v, size_t bounces) {
     if (v.escaped)
         std::cout << fmt::format("{} the ray along {} leaves the scene\n", bounces, text_of(v.direction));
+    else if (v.in_medium)
+        std::cout << fmt::format("{} scattered by a medium, at {}\n", bounces, text_of(v.position));
     else
         std::cout << fmt::format("{} instance {}{}, primitive {}, at {}, normal {}\n", bounces, v.instance,
                                  named(v.object), v.primitive, text_of(v.position), text_of(v.normal));
-    std::cout << fmt::format("    throughput {}\n", text_of(v.throughput));
+    std::cout << fmt::format("    throughput {}{}\n", text_of(v.throughput),
+                             v.transmittance == Rgb{1, 1, 1} ? "" : ", the medium leaves " + text_of(v.transmittance));
 }
 
 void print_vertex(const TracedVertex& v, size_t bounces) {

@@ -34,10 +34,12 @@ struct TracedBounce {
 };
 
 struct TracedVertex {
-    Vec3 origin, direction;  ///< the ray that led here
-    Rgb throughput;          ///< of the path up to here
-    bool escaped = false;    ///< the ray hit nothing; then there is no surface
-    Vec3 position, normal;   ///< world space; the shading normal
+    Vec3 origin, direction;      ///< the ray that led here
+    Rgb throughput;              ///< of the path up to here, with what the medium on the way has left
+    Rgb transmittance{1, 1, 1};  ///< what that is; where a medium scatters, over the probability of coming so far
+    bool escaped = false;        ///< the ray hit nothing; then there is no surface
+    bool in_medium = false;      ///< the ray was scattered before it hit anything: no surface either
+    Vec3 position, normal;       ///< world space; the shading normal
     uint32_t instance = 0, primitive = 0;
     std::string object;  ///< name of the instance, where it has one
     Rgb emission;        ///< radiance from here towards the ray's origin

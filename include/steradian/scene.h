@@ -119,16 +119,36 @@ struct RefractionMaterial {
     float eta = 1.5f;  ///< index inside over outside, > 0
 };
 
+/// What fills a closed body, the same everywhere in it.
+struct Medium {
+    Rgb absorption{0, 0, 0};  ///< coefficient per metre, 0 … kMaxMediumCoefficient
+    Rgb scattering{0, 0, 0};  ///< likewise
+    /// g of Henyey and Greenstein: the mean cosine between the directions before and after, from back to forward;
+    /// within ± kMaxAnisotropy.
+    float anisotropy = 0;
+    bool operator==(const Medium&) const = default;
+};
+inline constexpr double kMaxMediumCoefficient = 1e9;
+inline constexpr float kMaxAnisotropy = 0.999f;
+
+/// Of a body that overlaps or touches others: where several are, there is the one with the highest priority, and of
+/// equal priorities that whose material comes first (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced
+/// Images"). The surfaces of one material bound one body, which is their union. Its index is then that over vacuum.
+/// Bodies without a priority are wholly inside or outside of each other.
+using Priority = std::optional<uint32_t>;
+
 /// Dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface. Where it is rough,
 /// of microfacets with all bounces between them; an index within 1e-3 of 1 is smooth whatever the roughness.
 struct GlassMaterial {
-    float eta = 1.5f;            ///< index inside over outside, > 0
+    float eta = 1.5f;            ///< index inside over outside, > 0; with a priority over vacuum
     Rgb reflectance{1, 1, 1};    ///< tint of the reflected part
     Rgb transmittance{1, 1, 1};  ///< tint of the transmitted part
     Roughness roughness{};
     /// Abbe number V_d, at least 1: eta is the index at 587.56 nm, and others follow by Cauchy's formula with two
     /// terms. 0 or infinite: no dispersion. With eta < 1, a bubble, that of the glass around it.
     float abbe = 0;
+    Medium interior{};
+    Priority priority = std::nullopt;
 };
 
 /// A thin sheet of glass as one surface: all reflections inside it are summed, what passes goes straight on.
@@ -169,8 +189,10 @@ struct ColorInput {
 
 /// OpenPBR Surface 1.1, both sides: a matte, glassy or metallic base below a coat and fuzz. Names, meaning and defaults
 /// are those of the specification; weights, roughnesses and anisotropies are in [0, 1]. Subsurface scattering is
-/// diffuse, and transmission is tinted at the surface. A roughness of 0 counts as α = 1e-4. Instances of a material
-/// that emits are lights (see add_emission in scene/emission.h), one-sided unless the wall is thin.
+/// diffuse. Transmission is tinted at the surface by its colour, and by what the interior absorbs: where the
+/// specification has a transmission_depth, that is open_pbr_interior() and the colour is white. A roughness of 0 counts
+/// as α = 1e-4. Instances of a material that emits are lights (see add_emission in scene/emission.h), one-sided unless
+/// the wall is thin.
 struct OpenPbrMaterial {
     float base_weight = 1;
     ColorInput base_color{{0.8f, 0.8f, 0.8f}};
@@ -205,7 +227,14 @@ struct OpenPbrMaterial {
     FloatInput geometry_opacity{1};
     float geometry_opacity_cutoff = 0;  ///< above 0: an opacity below it counts as 0, any other as 1
     bool geometry_thin_walled = false;  ///< a sheet without an inside, instead of the boundary of a body
+    Medium interior{};                  ///< of what transmits and is not thin walled
+    Priority priority = std::nullopt;   ///< likewise; specular_ior is then over vacuum
 };
+
+/// The interior of OpenPBR 1.1, of which `color` (at least 1e-30) of the light passes `depth` metres (> 0) unscattered.
+/// `scatter` / depth is the coefficient of scattering; where that is more than is missing, absorption is raised by as
+/// much in all channels.
+Medium open_pbr_interior(Rgb color, float depth, Rgb scatter = {0, 0, 0}, float anisotropy = 0);
 
 /// Two materials on one surface: what scatters is (1 - weight) of the first and weight of the second, each with its own
 /// relief. Both come before this one in Scene::materials and may be mixes: of at most kMaxMixed materials in all.

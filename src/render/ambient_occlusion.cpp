@@ -25,7 +25,7 @@ private:
             if (!(dot(wi, from.ng) > 0)) return;
             Ray probe = spawn_ray(from, wi);
             if (c_.settings.ao_distance > 0) probe.tmax = c_.settings.ao_distance;
-            connect(id, 0, probe, {1, 1, 1});
+            connect(id, 0, probe, {1, 1, 1}, false);
         });
     }
 };

@@ -9,11 +9,6 @@ Rgb diffuse_share(const BsdfEval& e) {
     return out;
 }
 
-bool on_two_sides(const Bsdf& bsdf, Vec3 a, Vec3 b) {
-    const Vec3d n = bsdf.ng;
-    return (dot(Vec3d(a), n) < 0) != (dot(Vec3d(b), n) < 0);
-}
-
 }  // namespace
 
 LightParts::LightParts(const RenderContext& context, uint32_t paths) {

@@ -25,6 +25,7 @@ public:
           choice_(c_.settings.light_choice),
           limit_(c_.settings.clamp > 0 ? c_.settings.clamp : kInfinity) {
         states_.resize(capacity(max_tile_pixels));
+        scatters_ = true;
         // What light samples leave out then, the BSDF's find.
         if (c_.settings.light_sampling == LightSampling::mis) density_ = EnvironmentDensity::compensated;
     }
@@ -49,6 +50,13 @@ private:
 
     void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
         if (depth == 0) states_[id] = {};
+        if (!hit.found() && ends_in_medium(ray)) {
+            if (depth >= c_.settings.max_depth) return;
+            const Vertex vertex = vertex_in_medium(id, ray);
+            sample_lights(id, vertex, depth);
+            scatter(id, vertex.from, vertex, depth);
+            return;
+        }
         if (!hit.found()) {
             const SurfacePoint* from = states_[id].bsdf_pdf > 0 ? &states_[id].from : nullptr;
             for (uint32_t i = 0; i < distant_sources(shading_); ++i) {

@@ -58,11 +58,16 @@ size_t primitive_bytes(const Scene& scene, const Instance& instance) {
     return mesh ? (scene.meshes[index(*mesh)].indices.size() / 3 + 7) / 8 : 1;
 }
 
+/// Whether rays may go on through what they hit of it: it has holes, or boundaries that are not there.
+bool lets_pass(const ShadingScene& shading, uint32_t instance) {
+    return shading.is_cut_out(instance) || shading.has_priority(instance);
+}
+
 /// As many bits that are 1 as the largest instance has primitives of those that may let rays pass.
 std::vector<uint8_t> cut_out_bits(const ShadingScene& shading) {
     size_t bytes = 0;
     for (uint32_t i = 0; i < shading.instances.size(); ++i)
-        if (shading.is_cut_out(i)) bytes = std::max(bytes, primitive_bytes(shading.scene, shading.scene.instances[i]));
+        if (lets_pass(shading, i)) bytes = std::max(bytes, primitive_bytes(shading.scene, shading.scene.instances[i]));
     return std::vector<uint8_t>(bytes, 0xff);
 }
 
@@ -102,7 +107,7 @@ Result<std::shared_ptr<const RenderScene>> prepare_checked(Scene scene, const Ex
     instances.reserve(shading->scene.instances.size());
     for (const Instance& i : shading->scene.instances) {
         instances.push_back({index(i.shape), i.world_from_object});
-        if (shading->is_cut_out(static_cast<uint32_t>(instances.size() - 1)))
+        if (lets_pass(*shading, static_cast<uint32_t>(instances.size() - 1)))
             instances.back().cut_outs = std::span(cut_outs).first(primitive_bytes(shading->scene, i));
     }
 

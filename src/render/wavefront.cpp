@@ -16,7 +16,8 @@ uint32_t WavefrontIntegrator::capacity(uint32_t max_tile_pixels) noexcept {
 }
 
 uint64_t WavefrontIntegrator::bytes(uint32_t max_tile_pixels) noexcept {
-    constexpr uint64_t path = sizeof(Path) + 2 * (sizeof(uint32_t) + sizeof(Ray)) + sizeof(Hit);
+    constexpr uint64_t path =
+        sizeof(Path) + Interiors::bytes_per_path() + 2 * (sizeof(uint32_t) + sizeof(Ray)) + sizeof(Hit);
     constexpr uint64_t shadow_ray = sizeof(Ray) + sizeof(Connection) + sizeof(uint32_t) + sizeof(uint8_t);
     return max_tile_pixels * sizeof(uint32_t) + capacity(max_tile_pixels) * path + kBatchShadowRays * shadow_ray;
 }
@@ -31,7 +32,8 @@ WavefrontIntegrator::WavefrontIntegrator(const RenderContext& context, uint32_t 
       shading_(context.scene.shading),
       capacity_(capacity(max_tile_pixels)),
       first_hits_(context, capacity(max_tile_pixels)),
-      parts_(context, capacity(max_tile_pixels)) {
+      parts_(context, capacity(max_tile_pixels)),
+      interiors_(context, capacity(max_tile_pixels)) {
     if (parts_.wanted()) splits_.reserve(kBatchShadowRays);
     pixels_.reserve(max_tile_pixels);
     paths_.resize(capacity_);
@@ -101,6 +103,10 @@ void WavefrontIntegrator::generate(const WorkUnit& unit, uint64_t first_sample, 
         const Vec2 lens = c_.camera.has_lens() ? c_.sampler.get_2d(path.key, kLensDimension) : Vec2{};
         rays_.push_back(c_.camera.generate(film, lens));
         if (shading_.uses_footprints()) path.cone = c_.camera.cone(film);
+        if (interiors_.wanted()) {
+            interiors_.begin(i, rays_.back());
+            end_in_medium(i, rays_.back(), 0);
+        }
         active_.push_back(i);
     }
     counters_->camera_rays += active_.size();
@@ -114,7 +120,8 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
         c_.scene.accel.intersect(std::span(rays_).subspan(first, count), hits.subspan(first, count), kind);
     });
     depth_ = depth;
-    if ((depth == 0 && shading_.hides_instances) || shading_.has_cut_outs) look_through(hits);
+    if ((depth == 0 && shading_.hides_instances) || shading_.has_cut_outs || interiors_.wanted()) look_through(hits);
+    if (interiors_.wanted()) absorb();
     next_active_.clear();
     next_rays_.clear();
     bounce(depth);
@@ -127,16 +134,50 @@ void WavefrontIntegrator::advance(uint32_t depth) noexcept {
 /// Camera rays go on to what is behind a light that they do not see, all rays to what is behind a surface that happens
 /// not to be there.
 void WavefrontIntegrator::look_through(std::span<Hit> hits) noexcept {
-    for (size_t i = 0; i < hits.size() && !stopped(); ++i)
-        for (uint32_t crossing = 0; passes(paths_[active_[i]], rays_[i], hits[i], crossing); ++crossing) {
+    for (size_t i = 0; i < hits.size() && !stopped(); ++i) {
+        const uint32_t id = active_[i];
+        if (interiors_.wanted()) interiors_.start(id);
+        const auto goes_on = [&](uint32_t crossing) {
+            if (!hits[i].found()) return false;
+            return passes(paths_[id], rays_[i], hits[i], crossing) ||
+                   (interiors_.wanted() && interiors_.passes(id, rays_[i], hits[i]));
+        };
+        for (uint32_t crossing = 0; goes_on(crossing); ++crossing) {
             const Hit after = hits[i];
             c_.scene.accel.next_hit({&rays_[i], 1}, {&after, 1}, {&hits[i], 1});
         }
+    }
+}
+
+/// Whatever a path brings from its next vertex has passed what lies before it.
+void WavefrontIntegrator::absorb() noexcept {
+    for (size_t i = 0; i < rays_.size() && !stopped(); ++i) {
+        const uint32_t id = active_[i];
+        Path& path = paths_[id];
+        path.passed = scatters_ ? interiors_.weight(id, path.throughput, rays_[i], hits_[i])
+                                : interiors_.transmittance(id, false, hits_[i].t);
+        path.throughput = path.throughput * path.passed;
+    }
+}
+
+/// `depth` bounces lie behind the ray.
+void WavefrontIntegrator::end_in_medium(uint32_t id, Ray& ray, uint32_t depth) const noexcept {
+    if (!scatters_) return;
+    const Vec2 u = c_.sampler.get_2d(paths_[id].key, kMediumDimension + 4 * depth);
+    interiors_.end_in_medium(id, paths_[id].throughput, u, ray);
+}
+
+WavefrontIntegrator::Vertex WavefrontIntegrator::vertex_in_medium(uint32_t id, const Ray& ray) const noexcept {
+    Vertex out;
+    out.from.p = static_cast<Vec3>(Vec3d(ray.o) + Vec3d(ray.d) * double{ray.tmax});
+    out.from.both_sides = true;
+    out.bsdf.lobe = PhaseBsdf{interiors_.medium(id)->anisotropy};
+    out.wo = -ray.d;
+    return out;
 }
 
 /// `crossing` surfaces lie behind the ray already.
 bool WavefrontIntegrator::passes(const Path& path, const Ray& ray, const Hit& hit, uint32_t crossing) const noexcept {
-    if (!hit.found()) return false;
     const uint32_t light = shading_.instances[hit.instance].area_light;
     if (depth_ == 0 && light != kNoLight && !std::get<AreaLight>(shading_.scene.lights[light]).visible_to_camera)
         return true;
@@ -147,11 +188,14 @@ bool WavefrontIntegrator::passes(const Path& path, const Ray& ray, const Hit& hi
     return opacity <= 0 || c_.sampler.get_1d(path.key, dimension) >= opacity;
 }
 
-/// What cut-outs, with nothing else in the way, let pass.
-float WavefrontIntegrator::transmittance(const Ray& shadow_ray) const noexcept {
+/// What cut-outs, with nothing else in the way but boundaries that are not there, let pass.
+float WavefrontIntegrator::transmittance(const Connection& connection, const Ray& shadow_ray) const noexcept {
     float passes = 1;
+    Interiors::Walk walk;
+    if (interiors_.wanted()) walk = interiors_.walk(connection.path, connection.beyond);
     for (Hit hit = c_.scene.accel.intersect(shadow_ray); hit.found() && passes > 0 && !stopped();) {
-        passes *= 1 - opacity_at(shading_, surface_at(shading_, shadow_ray, hit));
+        if (!shading_.has_priority(hit.instance) || !interiors_.passes(walk, shadow_ray, hit))
+            passes *= 1 - opacity_at(shading_, surface_at(shading_, shadow_ray, hit));
         const Hit after = hit;
         c_.scene.accel.next_hit({&shadow_ray, 1}, {&after, 1}, {&hit, 1});
     }
@@ -163,9 +207,13 @@ void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& 
     vertex.origin = ray.o;
     vertex.direction = ray.d;
     vertex.throughput = paths_[id].throughput;
-    vertex.escaped = !hit.found();
+    vertex.in_medium = !hit.found() && ends_in_medium(ray);
+    vertex.escaped = !hit.found() && !vertex.in_medium;
+    if (interiors_.wanted()) vertex.transmittance = paths_[id].passed;
+    if (vertex.in_medium) vertex.position = vertex_in_medium(id, ray).from.p;
     if (hit.found()) {
-        const SurfacePoint point = surface_at(shading_, ray, hit);
+        SurfacePoint point = surface_at(shading_, ray, hit);
+        if (interiors_.wanted()) point.outer_index = interiors_.outer_index(id);
         vertex.position = point.p;
         vertex.normal = make_bsdf(shading_, point).frame.z;
         vertex.instance = hit.instance;
@@ -184,13 +232,15 @@ void WavefrontIntegrator::choose_wavelength(uint32_t id) noexcept {
 
 void WavefrontIntegrator::continue_along(uint32_t id, const Ray& ray) noexcept {
     next_rays_.push_back(ray);
+    if (interiors_.wanted()) end_in_medium(id, next_rays_.back(), depth_ + 1);
     next_active_.push_back(id);
 }
 
-void WavefrontIntegrator::connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept {
+void WavefrontIntegrator::connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution,
+                                  bool beyond) noexcept {
     if (shadow_rays_.size() == kBatchShadowRays) trace_shadow_rays();
     shadow_rays_.push_back(shadow_ray);
-    connections_.push_back({id, group, contribution});
+    connections_.push_back({id, group, contribution, beyond});
 }
 
 /// Those of one group after each other, each in the order in which they were given. Of many groups some share a place.
@@ -215,7 +265,7 @@ void WavefrontIntegrator::trace_shadow_rays() noexcept {
     });
     for (size_t i = 0; i < occluded.size(); ++i) {
         float passes = 1;
-        if (occluded[i] == Accel::cut_out) passes = transmittance(shadow_rays_[i]);
+        if (occluded[i] == Accel::cut_out) passes = transmittance(connections_[i], shadow_rays_[i]);
         const bool blocked = occluded[i] == Accel::blocked || !(passes > 0);
         if (c_.recorder) c_.recorder->shadow(blocked ? 0 : passes);
         if (blocked) continue;

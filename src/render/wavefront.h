@@ -7,6 +7,7 @@
 
 #include "render/first_hit.h"
 #include "render/integrator.h"
+#include "render/interiors.h"
 #include "render/light_parts.h"
 #include "render/recorder.h"
 #include "shading/bsdf.h"
@@ -24,7 +25,8 @@ enum Dimension : uint32_t {
     kWavelengthDimension = 0x3ffffffc,  // where a scene disperses light
     kLightDimension = 0x40000000,       // four per light, where all are sampled: position, choice of part, unused
     kOneLightDimension = 0x80000000,  // four per bounce, where one light is sampled: position, choice of part, of light
-    kOpacityDimension = 0xc0000000,   // 4096 per bounce: whether the surfaces on the way to the next vertex are there
+    kMediumDimension = 0xe0000000,   // four per bounce, how far the way to it is in a medium: channel, distance, unused
+    kOpacityDimension = 0xc0000000,  // 4096 per bounce: whether the surfaces on the way to the next vertex are there
 };
 
 /// Scaled down where its largest channel is above `limit`. What is not finite stays so, and is counted.
@@ -52,6 +54,7 @@ protected:
         float wavelength;  ///< micrometres; 0: all, as long as nothing has dispersed the path's light
         Rgb throughput, radiance;
         RayCone cone;  ///< of the ray under way; kept only where the scene uses footprints
+        Rgb passed;    ///< what the medium has left on its way; where there are interiors only
     };
 
     /// Shades the hits of all paths that are still on their way: calls each_hit. `depth` bounces lie behind them.
@@ -74,7 +77,7 @@ protected:
     void continue_along(uint32_t id, const Ray& ray) noexcept;
     /// The path's radiance grows by `contribution` when nothing is in the way of `shadow_ray`. Rays of one `group`,
     /// such as those towards one light, are traced together.
-    void connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution) noexcept;
+    void connect(uint32_t id, uint32_t group, const Ray& shadow_ray, Rgb contribution, bool beyond) noexcept;
     /// The path's radiance grows by emission that its ray has found, of a surface or of the background.
     void gain(uint32_t id, Rgb contribution, bool background) noexcept {
         Path& path = paths_[id];
@@ -90,6 +93,7 @@ protected:
             cone = cone.after(hit.t);
             out.footprint = footprint_of(cone, out);
         }
+        if (interiors_.wanted()) out.outer_index = interiors_.outer_index(id);
         if (depth_ == 0 && first_hits_.wanted()) first_hits_.see(id, paths_[id].key, out, -ray.d);
         return out;
     }
@@ -100,7 +104,9 @@ protected:
     /// The path turns at `point`.
     void turn(uint32_t id, const SurfacePoint& point, const Bsdf& bsdf, Vec3 wo, const BsdfSample& next) noexcept {
         if (parts_.wanted()) parts_.turn(id, bsdf, wo, next);
-        if (shading_.uses_footprints()) paths_[id].cone = bounced(paths_[id].cone, shading_, point, next);
+        if (interiors_.wanted()) interiors_.turn(id, on_two_sides(bsdf, wo, next.wi));
+        if (shading_.uses_footprints() && point.instance != kNoHit)
+            paths_[id].cone = bounced(paths_[id].cone, shading_, point, next);
     }
 
     /// A point where light is gathered.
@@ -118,6 +124,8 @@ protected:
         out.from.both_sides = !only_reflects(out.bsdf);
         return out;
     }
+    /// A point in a medium, where a ray has ended.
+    Vertex vertex_in_medium(uint32_t id, const Ray& ray) const noexcept;
     /// One direction towards one light. `scale` stands for the path's throughput over the expected number of samples,
     /// `limit` is for what comes of it (see clamped()), and weight(light's density, BSDF's) gives the sample's weight.
     template <class Weight>
@@ -136,12 +144,17 @@ protected:
     const ShadingScene& shading_;
     /// Which the environment is sampled with.
     EnvironmentDensity density_ = EnvironmentDensity::complete;
+    /// Media scatter: rays end in them. Otherwise what they scatter is lost.
+    bool scatters_ = false;
+    /// Whether a ray that has hit nothing has ended in a medium.
+    static bool ends_in_medium(const Ray& ray) noexcept { return ray.tmax < kInfinity; }
 
 private:
     /// A shadow ray's owner and what it brings when nothing is in the way.
     struct Connection {
         uint32_t path, group;
         Rgb contribution;
+        bool beyond = false;  ///< it leaves to the other side of the surface
     };
 
     void choose_wavelength(uint32_t id) noexcept;
@@ -149,7 +162,9 @@ private:
     void advance(uint32_t depth) noexcept;
     void look_through(std::span<Hit> hits) noexcept;
     bool passes(const Path& path, const Ray& ray, const Hit& hit, uint32_t crossing) const noexcept;
-    float transmittance(const Ray& shadow_ray) const noexcept;
+    void absorb() noexcept;
+    void end_in_medium(uint32_t id, Ray& ray, uint32_t depth) const noexcept;
+    float transmittance(const Connection& connection, const Ray& shadow_ray) const noexcept;
     void trace_shadow_rays() noexcept;
     void order_pixels(const TileRect& tile) noexcept;
     void order_shadow_rays() noexcept;
@@ -172,6 +187,7 @@ private:
     std::vector<uint8_t> occluded_;       ///< an Accel::Occlusion each
     FirstHits first_hits_;
     LightParts parts_;
+    Interiors interiors_;
     std::vector<LightSplit> splits_;  ///< of the shadow rays, where parts are wanted
 };
 
@@ -183,13 +199,19 @@ void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t
     const float density = towards->pdf > 0 ? towards->pdf : 1.0f;
     const BsdfEval scattered = eval(at.bsdf, at.wo, towards->wi);
     const float mis_weight = weight(towards->pdf, scattered.pdf);
-    const Rgb contribution = clamped(scale * scattered.f_cos * (towards->radiance / density) * mis_weight, limit);
+    Rgb arriving = towards->radiance / density;
+    bool beyond = false;
+    if (interiors_.wanted()) {
+        beyond = on_two_sides(at.bsdf, at.wo, towards->wi);
+        arriving = arriving * interiors_.transmittance(id, beyond, towards->distance());
+    }
+    const Rgb contribution = clamped(scale * scattered.f_cos * arriving * mis_weight, limit);
     const bool brings = !is_black(contribution);
     if (c_.recorder)
         c_.recorder->light(
             {light, {}, towards->wi, towards->pdf, scattered.pdf, mis_weight, contribution, brings, false});
     if (!brings) return;
-    connect(id, light, towards->shadow_ray, contribution);
+    connect(id, light, towards->shadow_ray, contribution, beyond);
     if (parts_.wanted()) splits_.push_back(parts_.split(id, at.bsdf, at.wo, towards->wi, scattered));
 }
 

@@ -20,6 +20,7 @@ public:
         light_textures(s.lights);
         profiles(s.profiles);
         dispersion(s.materials);
+        bodies(s.materials);
     }
     std::string hex() const { return hash_.hex(); }
 
@@ -44,6 +45,17 @@ private:
                 put('d', i, glass->abbe);
             if (const auto* m = std::get_if<OpenPbrMaterial>(&materials[i]); m && m->transmission_dispersion_scale != 0)
                 put('d', i, m->transmission_dispersion_scale, m->transmission_dispersion_abbe_number);
+        }
+    }
+
+    void bodies(const std::vector<Material>& materials) {
+        const auto body = [&](uint32_t i, const Medium& interior, const Priority& priority) {
+            if (interior != Medium{}) put('m', i, interior);
+            if (priority) put('n', i, *priority);
+        };
+        for (uint32_t i = 0; i < materials.size(); ++i) {
+            if (const auto* m = std::get_if<GlassMaterial>(&materials[i])) body(i, m->interior, m->priority);
+            if (const auto* m = std::get_if<OpenPbrMaterial>(&materials[i])) body(i, m->interior, m->priority);
         }
     }
 
@@ -86,6 +98,7 @@ private:
     void put(const DiffuseMaterial& m) { put(m.reflectance, m.two_sided, m.roughness); }
     void put(const RefractionMaterial& m) { put(m.eta); }
     void put(const GlassMaterial& m) { put(m.eta, m.reflectance, m.transmittance, m.roughness); }
+    void put(const Medium& m) { put(m.absorption, m.scattering, m.anisotropy); }
     void put(const MirrorMaterial& m) { put(m.reflectance); }
     void put(const std::optional<TextureId>& t) { put(t.has_value(), t.value_or(TextureId{})); }
     void put(const Roughness& r) { put(r.value, r.squared, r.texture); }

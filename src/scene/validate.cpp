@@ -111,6 +111,16 @@ private:
         color(m.transmittance, "the transmittance must be finite and not negative");
         check(m.roughness);
         require(m.abbe == 0 || m.abbe >= 1, "an Abbe number must be at least 1, or 0 for no dispersion");
+        check(m.interior);
+    }
+    void check(const Medium& m) const {
+        for (const Rgb coefficient : {m.absorption, m.scattering}) {
+            color(coefficient, "the coefficients of a medium must be finite and not negative");
+            require(static_cast<double>(max_component(coefficient)) <= kMaxMediumCoefficient,
+                    "the coefficients of a medium must be at most 1e9 per metre");
+        }
+        require(m.anisotropy >= -kMaxAnisotropy && m.anisotropy <= kMaxAnisotropy,
+                "the anisotropy of a medium must be between -0.999 and 0.999");
     }
     void check(const ThinGlassMaterial& m) const {
         eta(m.eta);
@@ -178,6 +188,10 @@ private:
         require(m.thin_film_ior >= 1 && m.thin_film_ior <= 3, "thin_film_ior must be between 1 and 3");
         require(m.emission_luminance >= 0 && m.emission_luminance <= 1e9f,
                 "emission_luminance must be between 0 and 1e9");
+        check(m.interior);
+        const bool there = m.geometry_opacity.value == 1 && !m.geometry_opacity.texture;
+        require(!m.priority || (there && !m.geometry_thin_walled),
+                "a body with a priority has neither holes nor thin walls");
     }
     void check(const MixMaterial& m) const {
         unit(m.weight, "the weight must be between 0 and 1");

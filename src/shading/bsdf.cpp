@@ -10,6 +10,7 @@
 #include "shading/bsdf/mirror.h"
 #include "shading/bsdf/mix.h"
 #include "shading/bsdf/open_pbr.h"
+#include "shading/bsdf/phase.h"
 #include "shading/bsdf/refraction.h"
 #include "shading/bsdf/rough_glass.h"
 #include "shading/bsdf/thin_glass.h"

@@ -94,8 +94,13 @@ struct MixBsdf {
     uint32_t count = 0;
 };
 
+/// Of a medium, at a point without a surface.
+struct PhaseBsdf {
+    float anisotropy = 0;
+};
+
 using Lobe = std::variant<DiffuseBsdf, RefractionBsdf, GlassBsdf, MirrorBsdf, ConductorBsdf, RoughGlassBsdf,
-                          ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf, MixBsdf>;
+                          ThinGlassBsdf, DiffuseTransmissionBsdf, OpenPbrBsdf, MixBsdf, PhaseBsdf>;
 
 struct Bsdf {
     Lobe lobe;
@@ -119,6 +124,12 @@ struct BsdfSample {
     bool transmitted = false;
     float radiance_scale = 1;  ///< the (η_i/η_t)² that is part of weight
 };
+
+/// Whether the surface lies between two directions.
+inline bool on_two_sides(const Bsdf& bsdf, Vec3 a, Vec3 b) {
+    const Vec3d n = bsdf.ng;
+    return (dot(Vec3d(a), n) < 0) != (dot(Vec3d(b), n) < 0);
+}
 
 /// Whether the surface sends light of different wavelengths in different directions.
 bool disperses(const ShadingScene& scene, const SurfacePoint& point) noexcept;

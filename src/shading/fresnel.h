@@ -6,6 +6,10 @@
 
 namespace steradian {
 
+inline constexpr float kLeastVisibleIndex = 1.001f;
+/// Nearer to 1 refraction is lost in the rounding to float: such a boundary is smooth whatever its roughness.
+inline bool refracts_visibly(float eta) { return std::fabs(eta - 1) >= 1e-3f; }
+
 /// Of a dielectric; cos_i on the incident side, eta = transmitted over incident index. 1 for total internal reflection.
 double fresnel_dielectric(double cos_i, double eta) noexcept;
 inline float fresnel_dielectric(float cos_i, float eta) noexcept {

@@ -11,11 +11,17 @@
 
 namespace steradian {
 
+/// How much of the way to its target a shadow ray goes: the last 2^-17 is more than the rounding of its direction, and
+/// less than the distance at which an occluder in front of a light is worth seeing.
+inline constexpr float kShadowRayEnd = 1 - 0x1p-17f;
+
 struct LightSample {
     Vec3 wi;         ///< unit, from the point towards the light
     Rgb radiance;    ///< incident radiance; for delta lights the irradiance on a surface that faces them
     float pdf = 0;   ///< per solid angle; 0 marks a delta light, whose "pdf" is 1
     Ray shadow_ray;  ///< unobstructed when occluded() says no
+    /// From where the shadow ray starts to the light, in metres; may be infinite.
+    double distance() const { return length(Vec3d(shadow_ray.d)) * (shadow_ray.tmax / double{kShadowRayEnd}); }
 };
 
 /// Number of shadow rays that light `light` wants per camera sample.
@@ -27,7 +33,7 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
 ///
 /// `from` must be turned to the side that is to be lit, see facing(): unless from.both_sides says otherwise, a constant
 /// environment is sampled on the side of from.ns only, and a surface that is seen from behind would get nothing from
-/// it.
+/// it. A point in space has no normals: ng and ns are zero.
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
                                         uint32_t choice, Vec2 u,
                                         EnvironmentDensity density = EnvironmentDensity::complete) noexcept;

@@ -205,6 +205,7 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     const float roughness =
         out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value, m.coat_roughness.value);
     const Roughness base = table_roughness(open_pbr_alpha(roughness, m.specular_roughness_anisotropy), out.textured);
+    out.base = base;
     out.coat_eta = m.coat_ior;
     // Under a coat the index is relative to the coat's. Seen from outside it reflects like its inverse: what would be
     // totally reflected has not got through the coat.
@@ -212,7 +213,7 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     const double weighted = weighted_index(below, m.specular_weight);
     out.eta_outside = weighted < 1 ? 1 / weighted : weighted;
     out.eta = static_cast<float>(weighted_index(m.specular_ior, m.specular_weight));
-    if (std::fabs(out.eta - 1) < 1e-3f) out.eta = 1.001f;  // nearer to 1 refraction is lost in the rounding to float
+    if (!refracts_visibly(out.eta)) out.eta = kLeastVisibleIndex;
     out.metal = shared.reflecting(base);
     out.dielectric = shared.coating(base, out.eta_outside);
     out.glass_index = GlassIndex(out.eta, 0);

@@ -53,6 +53,7 @@ struct FilmTables {
 struct OpenPbrTables {
     bool textured = false;                     ///< the tables of the base are over its roughness as well
     bool coat_textured = false;                ///< likewise
+    Roughness base;                            ///< as far as the tables go
     float eta = 1.5f;                          ///< of the base as a body: inside over outside
     GlassIndex glass_index;                    ///< the same by the wavelength
     double eta_outside = 1.5, coat_eta = 1.6;  ///< of reflections from outside

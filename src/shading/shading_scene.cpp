@@ -1,5 +1,6 @@
 #include "shading/shading_scene.h"
 
+#include <algorithm>
 #include <map>
 #include <new>
 #include <tuple>
@@ -239,21 +240,60 @@ public:
     void operator()(const GlassMaterial& m) {
         data().glass = GlassIndex(m.eta, static_cast<double>(m.abbe));
         data().disperses = data().glass.disperses();
-        const bool visible = std::fabs(m.eta - 1) >= 1e-3f;  // nearer to 1 refraction is lost in the rounding to float
-        if (visible && m.roughness.value != Vec2{0, 0})
+        if (refracts_visibly(m.eta) && m.roughness.value != Vec2{0, 0})
             data().energy = shared_.transmitting(m.roughness, data().glass.range());
+        data().dielectric = Dielectric{m.eta, m.interior, m.priority};
     }
     void operator()(const OpenPbrMaterial& m) {
         data().open_pbr = std::make_shared<const OpenPbrTables>(make_open_pbr_tables(m, shared_));
         data().disperses = data().open_pbr->glass_index.disperses();
+        const bool metal = m.base_metalness.value == 1 && !m.base_metalness.texture;
+        if (m.transmission_weight.value > 0 && !m.geometry_thin_walled && !metal)
+            data().dielectric = Dielectric{data().open_pbr->glass_index.at(0), m.interior, m.priority};
     }
     void operator()(const MixMaterial& m) {
         data().disperses = scene_.materials[index(m.first)].disperses || scene_.materials[index(m.second)].disperses;
+        for (const MaterialId part : {m.second, m.first})
+            if (const auto& body = scene_.materials[index(part)].dielectric) data().dielectric = body;
     }
     template <class Other>
     void operator()(const Other&) {}
 
+    /// Once all materials are known: of what is rough and has a priority, against every other index that there is.
+    void add_nested() {
+        for (size_t i = 0; i < scene_.materials.size(); ++i) {
+            ShadingScene::MaterialData& data = scene_.materials[i];
+            if (!data.dielectric || !data.dielectric->priority) continue;
+            for (const ShadingScene::MaterialData& other : scene_.materials) {
+                if (!other.dielectric || data.nested.size() == kMostNested) continue;
+                const float outer = other.dielectric->eta;
+                const auto same = [&](const ShadingScene::NestedEnergy& n) { return n.outer_index == outer; };
+                if (outer == 1 || std::any_of(data.nested.begin(), data.nested.end(), same)) continue;
+                if (auto energy = nested(scene_.scene.materials[i], data, outer))
+                    data.nested.push_back({outer, std::move(energy)});
+            }
+        }
+    }
+
 private:
+    static constexpr size_t kMostNested = 16;
+
+    std::shared_ptr<const MicrofacetEnergy> nested(const Material& material, const ShadingScene::MaterialData& data,
+                                                   float outer) {
+        const auto against = [&](const GlassIndex& own) {
+            const IndexRange range = own.range();
+            return IndexRange{range.first / outer, range.last / outer};
+        };
+        const bool visible = refracts_visibly(data.dielectric->eta / outer);
+        if (const auto* m = std::get_if<GlassMaterial>(&material)) {
+            const bool rough = visible && m->roughness.value != Vec2{0, 0};
+            return rough ? shared_.transmitting(m->roughness, against(data.glass)) : nullptr;
+        }
+        if (!data.open_pbr) return nullptr;
+        constexpr IndexRange least{double{kLeastVisibleIndex}, double{kLeastVisibleIndex}};
+        return shared_.transmitting(data.open_pbr->base, visible ? against(data.open_pbr->glass_index) : least);
+    }
+
     ShadingScene::MaterialData& data() { return scene_.materials.back(); }
     ShadingScene& scene_;
     SharedTables shared_;
@@ -335,7 +375,12 @@ Result<ShadingScene> make_shading_scene(Scene scene, Diagnostics& diagnostics) {
             out.materials.back().cut_out =
                 may_let_pass(material, [&](MaterialId id) { return out.materials[index(id)].cut_out; });
         }
-        for (uint32_t i = 0; i < out.instances.size(); ++i) out.has_cut_outs = out.has_cut_outs || out.is_cut_out(i);
+        materials.add_nested();
+        for (uint32_t i = 0; i < out.instances.size(); ++i) {
+            out.has_cut_outs = out.has_cut_outs || out.is_cut_out(i);
+            const Dielectric* body = out.dielectric(i);
+            out.has_interiors = out.has_interiors || (body && (body->priority || body->medium != Medium{}));
+        }
         for (const Instance& instance : out.scene.instances)
             if (out.materials[index(instance.material)].disperses && !out.wavelengths)
                 out.wavelengths = std::make_shared<const WavelengthSampler>();

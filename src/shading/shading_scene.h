@@ -9,6 +9,7 @@
 
 #include "math/transform.h"
 #include "shading/dispersion.h"
+#include "shading/interior.h"
 #include "shading/light/emitter.h"
 #include "shading/light_selection.h"
 #include "steradian/result.h"
@@ -61,15 +62,23 @@ struct ShadingScene {
     std::vector<LightData> lights;
     LightSelection light_selection;  ///< how one of them is chosen
 
+    struct NestedEnergy {
+        float outer_index = 1;  ///< of what is around the body
+        std::shared_ptr<const MicrofacetEnergy> energy;
+    };
     /// What follows from a material alone; empty where its kind needs nothing.
     struct MaterialData {
         std::shared_ptr<const MicrofacetEnergy> energy;
         Rgb mean_fresnel;  ///< of metals with a complex index
         std::shared_ptr<const OpenPbrTables> open_pbr;
-        uint32_t relief = kNoRelief;  ///< index into scene.reliefs
-        bool cut_out = false;         ///< surfaces of it may let rays pass (opacity.h)
-        GlassIndex glass;             ///< of a GlassMaterial
-        bool disperses = false;       ///< surfaces of it may (bsdf.h)
+        uint32_t relief = kNoRelief;           ///< index into scene.reliefs
+        bool cut_out = false;                  ///< surfaces of it may let rays pass (opacity.h)
+        GlassIndex glass;                      ///< of a GlassMaterial
+        bool disperses = false;                ///< surfaces of it may (bsdf.h)
+        std::optional<Dielectric> dielectric;  ///< of what its surfaces enclose; of a mix that of the first such part
+        /// Of rough dielectrics with a priority, where they border on others: `energy`, or of OpenPBR that of the
+        /// glass.
+        std::vector<NestedEnergy> nested;
     };
     std::vector<MaterialData> materials;  ///< parallel to scene.materials
 
@@ -83,6 +92,19 @@ struct ShadingScene {
     bool hides_instances = false;  ///< there is an area light that is not visible to the camera
     bool has_cut_outs = false;     ///< there is an instance of a material that is one
     bool is_cut_out(uint32_t instance) const { return materials[index(scene.instances[instance].material)].cut_out; }
+    /// There is a body that absorbs, or one with a priority: paths keep track of what they are in.
+    bool has_interiors = false;
+    uint32_t material_of(uint32_t instance) const { return index(scene.instances[instance].material); }
+    /// Null where the instance bounds no dielectric body.
+    const Dielectric* dielectric(uint32_t instance) const {
+        const auto& body = materials[material_of(instance)].dielectric;
+        return body ? &*body : nullptr;
+    }
+    /// Whether the boundary may be one that is not there.
+    bool has_priority(uint32_t instance) const {
+        const Dielectric* body = dielectric(instance);
+        return body && body->priority;
+    }
     std::shared_ptr<const EnvironmentTable> environment;
     std::shared_ptr<const WavelengthSampler> wavelengths;  ///< null where no instance disperses
 };

@@ -16,9 +16,10 @@ struct SurfacePoint {
     Vec3 ng;       ///< unit geometric normal: outside by the shape's own orientation, not flipped towards the ray
     Vec3 ns;       ///< unit shading normal, on the same side as ng
     Vec2 uv;
-    Vec3 wo;              ///< unit, to where the ray came from; zero where nobody said
-    Vec2 hit_uv;          ///< u and v of the hit
-    float footprint = 0;  ///< metres of the surface that a ray stands for (ray_cone.h); 0: a point
+    Vec3 wo;                ///< unit, to where the ray came from; zero where nobody said
+    Vec2 hit_uv;            ///< u and v of the hit
+    float footprint = 0;    ///< metres of the surface that a ray stands for (ray_cone.h); 0: a point
+    float outer_index = 1;  ///< over vacuum, of what is around a body with a priority (interior.h)
     uint32_t instance = kNoHit;
     uint32_t prim = kNoHit;
     bool both_sides = false;  ///< light from behind ns counts as well, for choosing lights and directions towards them

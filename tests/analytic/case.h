@@ -55,6 +55,7 @@ std::vector<Case> goniometric_cases();
 std::vector<Case> specular_cases();
 std::vector<Case> dispersion_cases();
 std::vector<Case> path_cases();
+std::vector<Case> medium_cases();
 std::vector<Case> opacity_cases();
 std::vector<Case> emission_cases();
 std::vector<Case> surface_cases();

@@ -37,8 +37,8 @@ Case as_in_catalogue(Case c, std::string id) {
 std::vector<Case> all_cases() {
     std::vector<Case> out;
     for (const auto family : {delta_light_cases, area_light_cases, emitter_side_cases, environment_cases, sun_cases,
-                              goniometric_cases, specular_cases, dispersion_cases, path_cases, opacity_cases,
-                              emission_cases, surface_cases, camera_cases, transform_cases}) {
+                              goniometric_cases, specular_cases, dispersion_cases, path_cases, medium_cases,
+                              opacity_cases, emission_cases, surface_cases, camera_cases, transform_cases}) {
         std::vector<Case> cases = family();
         out.insert(out.end(), std::make_move_iterator(cases.begin()), std::make_move_iterator(cases.end()));
     }

@@ -30,6 +30,7 @@ TEST(ClosedForms, Suns) { expect_all(sun_cases()); }
 TEST(ClosedForms, SpecularSurfaces) { expect_all(specular_cases()); }
 TEST(ClosedForms, Dispersion) { expect_all(dispersion_cases()); }
 TEST(ClosedForms, Paths) { expect_all(path_cases()); }
+TEST(ClosedForms, Media) { expect_all(medium_cases()); }
 TEST(ClosedForms, Opacity) { expect_all(opacity_cases()); }
 TEST(ClosedForms, Emission) { expect_all(emission_cases()); }
 TEST(ClosedForms, DiffuseSurfaces) { expect_all(surface_cases()); }

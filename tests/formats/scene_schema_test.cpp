@@ -30,8 +30,9 @@ Names keys_of(Value object) {
 }
 
 std::vector<ObjectSpec> all_specs() {
-    std::vector<ObjectSpec> all{kSceneSpec,     kRenderSpec, kFilmSpec,   kFilterSpec,    kObjectLightSpec,
-                                kTransformSpec, kRotateSpec, kLookAtSpec, kNormalMapSpec, kBumpMapSpec};
+    std::vector<ObjectSpec> all{kSceneSpec,       kRenderSpec,    kFilmSpec,   kFilterSpec,
+                                kObjectLightSpec, kTransformSpec, kRotateSpec, kLookAtSpec,
+                                kNormalMapSpec,   kBumpMapSpec,   kMediumSpec};
     all.insert(all.end(), std::begin(kCameraSpecs), std::end(kCameraSpecs));
     all.insert(all.end(), std::begin(kTextureSpecs), std::end(kTextureSpecs));
     all.insert(all.end(), std::begin(kMaterialSpecs), std::end(kMaterialSpecs));

@@ -255,7 +255,9 @@ TEST(GltfMaterial, ColourFactorsOutsideTheirRangeAreClamped) {
         "{\"transmissionFactor\": 1}, \"KHR_materials_volume\": {\"thicknessFactor\": 2, \"attenuationDistance\": 1, "
         "\"attenuationColor\": [1.5, 0.25, -1]}}",
         "attenuationColor"));
-    EXPECT_EQ(absorbs.transmission_color.value, (Rgb{1, 0.25f, 0}));
+    EXPECT_EQ(absorbs.transmission_color.value, (Rgb{1, 1, 1}));
+    EXPECT_EQ(absorbs.interior, open_pbr_interior({1, 0.25f, 0}, 1));
+    EXPECT_NEAR(absorbs.interior.absorption.g, std::log(4.0), 1e-6);
 }
 
 TEST(GltfMaterial, DiffuseTransmissionIsThatOfSheets) {
@@ -338,6 +340,18 @@ TEST(GltfMaterial, SimpleOnesAreWhatTheyAre) {
         material_of<GlassMaterial>(with_material(glass + ", \"KHR_materials_volume\": {\"thicknessFactor\": 1}}"));
     EXPECT_EQ(solid.eta, 1.3f);
     EXPECT_EQ(solid.transmittance, (Rgb{1, 0.5f, 0.25f}));
+    EXPECT_EQ(solid.interior, Medium{});
+    // The mesh says how thick the body is, not the file.
+    for (const char* thickness : {"1", "0.001"}) {
+        const LoadedScene tinted =
+            with_material(glass + ", \"KHR_materials_volume\": {\"thicknessFactor\": " + thickness +
+                          ", \"attenuationDistance\": 0.5, \"attenuationColor\": [1, 0.5, 0.25]}}");
+        const Medium interior = material_of<GlassMaterial>(tinted).interior;
+        EXPECT_EQ(interior.absorption.r, 0);
+        EXPECT_NEAR(interior.absorption.g, 2 * std::log(2.0), 1e-6);
+        EXPECT_NEAR(interior.absorption.b, 2 * std::log(4.0), 1e-6);
+        EXPECT_TRUE(tinted.fidelity.empty());
+    }
     EXPECT_EQ(material_of<ThinGlassMaterial>(with_material(glass + "}")).eta, 1.3f);
     EXPECT_TRUE(material_of<DiffuseMaterial>(
                     with_material(start + "0}, \"extensions\": {\"KHR_materials_specular\": {\"specularFactor\": 0}}"))

@@ -59,6 +59,25 @@ INSTANTIATE_TEST_SUITE_P(
               [](Scene& s) {
                   s.materials[0] = ConductorMaterial{ComplexIndex{}, {{0, 0}, true, TextureId{1}}};
               }},
+        Fault{"coefficients of a medium must be finite",
+              [](Scene& s) {
+                  s.materials[0] = GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}, {}, 0, {{-1, 0, 0}, {}, 0}};
+              }},
+        Fault{"at most 1e9 per metre",
+              [](Scene& s) {
+                  s.materials[0] = GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}, {}, 0, {{}, {2e9f, 0, 0}, 0}};
+              }},
+        Fault{"the anisotropy of a medium",
+              [](Scene& s) {
+                  s.materials[0] = GlassMaterial{1.5f, {1, 1, 1}, {1, 1, 1}, {}, 0, {{}, {}, 1}};
+              }},
+        Fault{"neither holes nor thin walls",
+              [](Scene& s) {
+                  OpenPbrMaterial m;
+                  m.priority = 1;
+                  m.geometry_thin_walled = true;
+                  s.materials[0] = m;
+              }},
         Fault{"relief 0: refers to material 5",
               [](Scene& s) {
                   s.reliefs = {{MaterialId{5}, NormalMap{}}};

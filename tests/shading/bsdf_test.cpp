@@ -33,7 +33,8 @@ std::vector<Bsdf> all_bsdfs(Vec3 ng, Vec3 ns) {
             push({0.6f});
         } else if constexpr (std::is_same_v<Kind, MirrorBsdf>) {
             push({{1, 1, 1}});
-        } else if constexpr (!std::is_same_v<Kind, OpenPbrBsdf> && !std::is_same_v<Kind, MixBsdf>) {
+        } else if constexpr (!std::is_same_v<Kind, OpenPbrBsdf> && !std::is_same_v<Kind, MixBsdf> &&
+                             !std::is_same_v<Kind, PhaseBsdf>) {
             push({});
         }
         for (Bsdf& more : all_bsdfs<I + 1>(ng, ns)) out.push_back(std::move(more));

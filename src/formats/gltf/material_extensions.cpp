@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "formats/gltf/materials.h"
-#include "math/elementary.h"
 #include "math/vector.h"
 
 namespace steradian::gltf {
@@ -22,8 +21,8 @@ double ior_of(double reflectance) {
 
 }  // namespace
 
-/// What passes is tinted by the base colour where it enters and where it leaves. Absorption on the way is put into the
-/// two surfaces, for a body as thick as the file says.
+/// What passes is tinted by the base colour where it enters and where it leaves, and absorbed on the way. How thick a
+/// body is says its mesh; a thickness of 0 is that of a sheet.
 void Materials::read_transmission(const Object& material, Reading& r) {
     const auto transmission = material.extension("KHR_materials_transmission");
     if (!transmission) return;
@@ -34,16 +33,10 @@ void Materials::read_transmission(const Object& material, Reading& r) {
     const auto volume = material.extension("KHR_materials_volume");
     const double thickness = volume ? volume->number_or("thicknessFactor", 0, kNotNegative) : 0;
     r.solid = thickness > 0;
-    if (!r.solid || s.transmission_weight.value == 0) return;
-    if (!volume->has("attenuationDistance")) return;
+    if (!r.solid || s.transmission_weight.value == 0 || !volume->has("attenuationDistance")) return;
     const double distance = volume->number_or("attenuationDistance", 1, {0, 1e30, true});
     const Rgb color = this->color(*volume, "attenuationColor", {1, 1, 1});
-    if (color == Rgb{1, 1, 1}) return;
-    context_.not_honoured("the absorption of volumes is put into their surfaces: thin and thick parts look alike",
-                          volume->offset());
-    for (int c = 0; c < 3; ++c)
-        s.transmission_color.value[c] *=
-            static_cast<float>(math::pow(static_cast<double>(color[c]), thickness / (2 * distance)));
+    s.interior = open_pbr_interior(color, static_cast<float>(distance));
 }
 
 /// The extension's number is 20 over the Abbe number. Thin sheets do not refract, so they do not disperse either.

@@ -133,7 +133,7 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
         const Rgb tint = s.transmission_color.value;
         if (r.solid) {
             const float abbe = s.transmission_dispersion_scale > 0 ? s.transmission_dispersion_abbe_number : 0;
-            return GlassMaterial{s.specular_ior, s.specular_color.value, tint, {}, abbe};
+            return GlassMaterial{s.specular_ior, s.specular_color.value, tint, {}, abbe, s.interior};
         }
         if (is_white(s.specular_color.value)) return ThinGlassMaterial{s.specular_ior, tint};
     }

@@ -34,8 +34,9 @@ inline constexpr Key kVertexColorTexture[] = {"type"};
 
 inline constexpr Key kDiffuse[] = {"type", "reflectance", "two_sided", "roughness", "normal_map", "bump_map"};
 inline constexpr Key kRefraction[] = {"type", "eta", "normal_map", "bump_map"};
-inline constexpr Key kGlass[] = {"type",  "eta",  "reflectance", "transmittance", "roughness",
-                                 "alpha", "abbe", "normal_map",  "bump_map"};
+inline constexpr Key kGlass[] = {"type", "eta",      "reflectance", "transmittance", "roughness", "alpha",
+                                 "abbe", "interior", "priority",    "normal_map",    "bump_map"};
+inline constexpr Key kMedium[] = {"absorption", "scattering", "anisotropy"};
 inline constexpr Key kMirror[] = {"type", "reflectance", "normal_map", "bump_map"};
 inline constexpr Key kThinGlass[] = {"type", "eta", "transmittance", "normal_map", "bump_map"};
 inline constexpr Key kDiffuseTransmission[] = {"type", "reflectance", "transmittance", "normal_map", "bump_map"};
@@ -51,6 +52,9 @@ inline constexpr Key kOpenPbr[] = {"type",
                                    "specular_roughness_anisotropy",
                                    "transmission_weight",
                                    "transmission_color",
+                                   "transmission_depth",
+                                   "transmission_scatter",
+                                   "transmission_scatter_anisotropy",
                                    "transmission_dispersion_scale",
                                    "transmission_dispersion_abbe_number",
                                    "subsurface_weight",
@@ -72,6 +76,7 @@ inline constexpr Key kOpenPbr[] = {"type",
                                    "emission_color",
                                    "geometry_opacity",
                                    "geometry_thin_walled",
+                                   "priority",
                                    "normal_map",
                                    "bump_map"};
 inline constexpr Key kConductor[] = {"type",      "metal", "n",    "k",          "reflectance", "edge_reflectance",
@@ -138,6 +143,7 @@ inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiff
                                                 {"diffuse_transmission_material", keys::kDiffuseTransmission},
                                                 {"open_pbr_material", keys::kOpenPbr},
                                                 {"mix_material", keys::kMix}};
+inline constexpr ObjectSpec kMediumSpec{"medium", keys::kMedium};
 inline constexpr ObjectSpec kNormalMapSpec{"normal_map", keys::kNormalMap};
 inline constexpr ObjectSpec kBumpMapSpec{"bump_map", keys::kBumpMap};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},

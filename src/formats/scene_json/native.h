@@ -39,10 +39,15 @@ private:
     /// "roughness" or "alpha": a number, two, or a texture.
     Roughness read_roughness(ObjectReader& material);
     ConductorMaterial read_conductor(ObjectReader& material);
+    GlassMaterial read_glass(ObjectReader& material);
+    Rgb read_tint(ObjectReader& material, std::string_view key);
+    Medium read_interior(ObjectReader& material);
+    Priority read_priority(ObjectReader& material);
     FloatInput read_input(ObjectReader& material, std::string_view key, FloatInput fallback);
     ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback,
                           TextureUse use = TextureUse::reflection);
     OpenPbrMaterial read_open_pbr(ObjectReader& material);
+    void read_open_pbr_interior(ObjectReader& material, OpenPbrMaterial& m);
     DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
     /// "normal_map" or "bump_map"; `material` is filled in later.
     std::optional<Relief> read_relief(ObjectReader& material);

@@ -21,6 +21,21 @@ ColorInput NativeLoader::read_input(ObjectReader& material, std::string_view key
     return {json::read_color(source_, *value, quoted(key), kUnit)};
 }
 
+/// Section "Translucent base": with a depth the colour is that of the interior, without one that of the surface.
+void NativeLoader::read_open_pbr_interior(ObjectReader& material, OpenPbrMaterial& m) {
+    const float depth = material.number_or("transmission_depth", 0, {0, 1e9});
+    const Rgb scatter = material.color_or("transmission_scatter", {0, 0, 0}, kUnit);
+    const float anisotropy = material.number_or("transmission_scatter_anisotropy", 0, {-1, 1});
+    if (depth == 0) return;
+    if (m.transmission_color.texture)
+        source_.fail(material.key_offset("transmission_depth"),
+                     "with a 'transmission_depth' the 'transmission_color' fills the body: it must not be a texture");
+    if (m.geometry_thin_walled)
+        source_.fail(material.key_offset("transmission_depth"), "a thin wall has no 'transmission_depth'");
+    m.interior = open_pbr_interior(m.transmission_color.value, depth, scatter, anisotropy);
+    m.transmission_color = {};
+}
+
 OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     OpenPbrMaterial m;
     const auto input = [&](std::string_view key, auto& in) { in = read_input(material, key, in); };
@@ -59,6 +74,8 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     m.emission_color = read_input(material, "emission_color", m.emission_color, TextureUse::emission);
     input("geometry_opacity", m.geometry_opacity);
     m.geometry_thin_walled = material.boolean_or("geometry_thin_walled", m.geometry_thin_walled);
+    read_open_pbr_interior(material, m);
+    m.priority = read_priority(material);
     return m;
 }
 

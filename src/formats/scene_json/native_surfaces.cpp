@@ -144,6 +144,42 @@ Roughness NativeLoader::read_roughness(ObjectReader& material) {
     return out;
 }
 
+Rgb NativeLoader::read_tint(ObjectReader& material, std::string_view key) {
+    const Rgb color = material.color_or(key, {1, 1, 1}, json::kReflectance);
+    context_.warn_about_reflectance(color, material.offset());
+    return color;
+}
+
+Medium NativeLoader::read_interior(ObjectReader& material) {
+    Medium out;
+    const auto value = material.find("interior");
+    if (!value) return out;
+    ObjectReader reader(source_, *value, kMediumSpec, "interior");
+    const Range coefficient{0, kMaxMediumCoefficient}, cosine{-kMaxAnisotropy, kMaxAnisotropy};
+    out.absorption = reader.color_or("absorption", out.absorption, coefficient);
+    out.scattering = reader.color_or("scattering", out.scattering, coefficient);
+    out.anisotropy = reader.number_or("anisotropy", out.anisotropy, cosine);
+    reader.finish();
+    return out;
+}
+
+Priority NativeLoader::read_priority(ObjectReader& material) {
+    if (!material.find("priority")) return std::nullopt;
+    return static_cast<uint32_t>(material.integer_or("priority", 0, 0, 1'000'000));
+}
+
+GlassMaterial NativeLoader::read_glass(ObjectReader& material) {
+    GlassMaterial out;
+    out.eta = material.number_or("eta", out.eta, kEta);
+    out.reflectance = read_tint(material, "reflectance");
+    out.transmittance = read_tint(material, "transmittance");
+    out.roughness = read_roughness(material);
+    out.abbe = read_abbe(material);
+    out.interior = read_interior(material);
+    out.priority = read_priority(material);
+    return out;
+}
+
 ConductorMaterial NativeLoader::read_conductor(ObjectReader& material) {
     static constexpr Range kIndexN{1e-3, 1e3}, kIndexK{0, 1e3};
     ConductorMaterial out;
@@ -191,11 +227,6 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
     const size_t type = read_type(source_, value, what, kMaterialTypes);
     ObjectReader reader(source_, value, kMaterialSpecs[type], what);
     reader.require("type");
-    const auto tint = [&](std::string_view key) {
-        const Rgb color = reader.color_or(key, {1, 1, 1}, json::kReflectance);
-        context_.warn_about_reflectance(color, value.offset());
-        return color;
-    };
     Material material;
     switch (type) {
         case 0: {
@@ -209,18 +240,11 @@ MaterialId NativeLoader::read_material(Value value, const std::string& name) {
         case 1:
             material = RefractionMaterial{reader.number_or("eta", 1.5f, kEta)};
             break;
-        case 2: {
-            GlassMaterial glass;
-            glass.eta = reader.number_or("eta", glass.eta, kEta);
-            glass.reflectance = tint("reflectance");
-            glass.transmittance = tint("transmittance");
-            glass.roughness = read_roughness(reader);
-            glass.abbe = read_abbe(reader);
-            material = glass;
+        case 2:
+            material = read_glass(reader);
             break;
-        }
         case 3:
-            material = MirrorMaterial{tint("reflectance")};
+            material = MirrorMaterial{read_tint(reader, "reflectance")};
             break;
         case 4:
             material = read_conductor(reader);

@@ -7,9 +7,9 @@
 namespace steradian {
 
 inline PlainLobe make_lobe(const GlassMaterial& material, const LobeContext& context) {
-    const float eta = context.material.glass.at(context.wavelength);
-    if (context.material.energy) {
-        const Roughness& roughness = material.roughness;
+    const float own = context.material.glass.at(context.wavelength), eta = relative_index(own, context);
+    const Roughness& roughness = material.roughness;
+    if (refracts_visibly(relative_index(material.eta, context)) && roughness.value != Vec2{0, 0}) {
         const auto read = [&](TextureId id) { return eval_texture(context.scene, id, context.point).r; };
         const Microfacets facets = microfacets(roughness, roughness.texture ? read(*roughness.texture) : 1);
         if (!facets.smooth())
@@ -17,9 +17,9 @@ inline PlainLobe make_lobe(const GlassMaterial& material, const LobeContext& con
                                   material.reflectance,
                                   material.transmittance,
                                   facets,
-                                  context.material.energy.get(),
+                                  energy_of_boundary(context, context.material.energy),
                                   nullptr,
-                                  context.material.glass.range().place(eta)};
+                                  context.material.glass.range().place(own)};
     }
     return GlassBsdf{eta, material.reflectance, material.transmittance};
 }

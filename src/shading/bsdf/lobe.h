@@ -21,6 +21,18 @@ struct LobeContext {
     float wavelength = 0;  ///< as in make_bsdf
 };
 
+/// Of a dielectric with the index `eta`, over that of what is around it.
+inline float relative_index(float eta, const LobeContext& context) { return eta / context.point.outer_index; }
+
+/// What a rough boundary to what is around it loses; null where nobody has computed that.
+inline const MicrofacetEnergy* energy_of_boundary(const LobeContext& context,
+                                                  const std::shared_ptr<const MicrofacetEnergy>& in_vacuum) {
+    if (context.point.outer_index == 1) return in_vacuum.get();
+    for (const ShadingScene::NestedEnergy& nested : context.material.nested)
+        if (nested.outer_index == context.point.outer_index) return nested.energy.get();
+    return nullptr;
+}
+
 /// Whether it matters how the lobe is turned about the normal.
 template <class Lobe>
 bool lobe_has_direction(const Lobe&) {

@@ -78,14 +78,16 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     out.specular_color = color(m.specular_color);
     out.metal = open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get());
     out.transmission = number(m.transmission_weight);
-    const float eta = tables.glass_index.at(context.wavelength);
+    const float own = tables.glass_index.at(context.wavelength);
+    float eta = relative_index(own, context);
+    if (!refracts_visibly(eta)) eta = kLeastVisibleIndex;
     out.glass = {eta,
                  out.specular_color,
                  color(m.transmission_color),
                  facets,
-                 tables.glass.get(),
+                 energy_of_boundary(context, tables.glass),
                  tables.film.glass.get(),
-                 tables.glass_index.range().place(eta)};
+                 tables.glass_index.range().place(own)};
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
     out.subsurface = number(m.subsurface_weight);

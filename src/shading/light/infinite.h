@@ -10,8 +10,10 @@ namespace steradian {
 inline uint32_t samples_wanted(const EnvironmentLight& light) { return light.samples; }
 
 /// Of a constant sky: by the cosine about the shading normal, so that a diffuse surface under an open sky has no
-/// variance at all; where light from behind counts as well, half of the directions are there.
+/// variance at all; where light from behind counts as well, half of the directions are there. Where there is no
+/// surface, all directions are alike.
 inline float constant_sky_pdf(const SurfacePoint& from, Vec3 wi) {
+    if (from.ns == Vec3{}) return static_cast<float>(1 / (4 * std::numbers::pi));
     const float cosine = dot(wi, from.ns);
     return from.both_sides ? 0.5f * kInvPi * std::fabs(cosine) : kInvPi * max_of(cosine, 0.0f);
 }
@@ -22,9 +24,13 @@ inline std::optional<LightSample> sample_kind(const EnvironmentLight&, const Lig
     if (table.empty()) return std::nullopt;
     LightSample out;
     if (table.is_constant()) {
-        Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
-        if (from.both_sides && choice >> 31 != 0) local.z = -local.z;
-        out.wi = normalize(Frame::from_z(from.ns).to_world(local));
+        if (from.ns == Vec3{}) {
+            out.wi = static_cast<Vec3>(warp::sphere(u));
+        } else {
+            Vec3 local = static_cast<Vec3>(warp::cosine_hemisphere(u));
+            if (from.both_sides && choice >> 31 != 0) local.z = -local.z;
+            out.wi = normalize(Frame::from_z(from.ns).to_world(local));
+        }
         out.pdf = constant_sky_pdf(from, out.wi);
     } else {
         const EnvironmentSample at = table.sample(choice, u, context.density);

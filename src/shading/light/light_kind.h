@@ -21,10 +21,6 @@ struct LightContext {
     const ShadingScene::LightData& data() const { return scene.lights[light]; }
 };
 
-/// How much of the way to its target a shadow ray goes: the last 2^-17 is more than the rounding of its direction, and
-/// less than the distance at which an occluder in front of a light is worth seeing.
-inline constexpr float kShadowRayEnd = 1 - 0x1p-17f;
-
 /// Towards a light that is infinitely far away.
 inline Ray shadow_ray_to_infinity(const SurfacePoint& from, Vec3 wi) { return spawn_ray(from, wi); }
 
