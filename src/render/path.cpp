@@ -26,12 +26,14 @@ public:
           limit_(c_.settings.clamp > 0 ? c_.settings.clamp : kInfinity) {
         states_.resize(capacity(max_tile_pixels));
         scatters_ = true;
+        arrivals_.resize(kTogether);
         // What light samples leave out then, the BSDF's find.
         if (c_.settings.light_sampling == LightSampling::mis) density_ = EnvironmentDensity::compensated;
     }
 
     static uint64_t bytes(uint32_t max_tile_pixels) noexcept {
-        return WavefrontIntegrator::bytes(max_tile_pixels) + capacity(max_tile_pixels) * sizeof(State);
+        return WavefrontIntegrator::bytes(max_tile_pixels) + capacity(max_tile_pixels) * sizeof(State) +
+               kTogether * sizeof(Arrival);
     }
 
 private:
@@ -44,17 +46,32 @@ private:
         float radiance_scale = 1;       ///< what refraction has left in the throughput
     };
 
+    /// So many paths choose their lights together: as many as there are before memory is what they wait for, and few
+    /// enough that what waits stays in the first cache.
+    static constexpr uint32_t kTogether = 16;
+    /// A path at a surface, or at a point in a medium, before it chooses lights and a direction.
+    struct Arrival {
+        uint32_t id;
+        SurfacePoint point;
+        Vertex vertex;
+    };
+    static_assert(std::is_trivially_destructible_v<Arrival>);
+
     void bounce(uint32_t depth) noexcept override {
-        each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) { shade(id, ray, hit, depth); });
+        each_hit([&](uint32_t id, const Ray& ray, const Hit& hit) { see(id, ray, hit, depth); });
+        leave(depth);
     }
 
-    void shade(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
+    /// What the path's ray has found: its emission at once; a vertex waits for others to come.
+    void see(uint32_t id, const Ray& ray, const Hit& hit, uint32_t depth) noexcept {
         if (depth == 0) states_[id] = {};
         if (!hit.found() && ends_in_medium(ray)) {
             if (depth >= c_.settings.max_depth) return;
-            const Vertex vertex = vertex_in_medium(id, ray);
-            sample_lights(id, vertex, depth);
-            scatter(id, vertex.from, vertex, depth);
+            Arrival& a = arrivals_[waiting_];
+            a.id = id;
+            ::new (static_cast<void*>(&a.vertex)) Vertex(vertex_in_medium(id, ray));
+            ::new (static_cast<void*>(&a.point)) SurfacePoint(a.vertex.from);
+            if (++waiting_ == kTogether) leave(depth);
             return;
         }
         if (!hit.found()) {
@@ -65,16 +82,29 @@ private:
             }
             return;
         }
-        const SurfacePoint point = arrive(id, ray, hit);
+        // In place: a BSDF takes kilobytes, of which most kinds use a few bytes.
+        Arrival& a = arrivals_[waiting_];
+        a.id = id;
+        const SurfacePoint& point = *::new (static_cast<void*>(&a.point)) SurfacePoint(arrive(id, ray, hit));
         const Vec3 wo = -ray.d;
         const uint32_t light = shading_.instances[point.instance].area_light;
         add_emission(id, emitted_radiance(shading_, point, wo), light, depth, false,
                      [&] { return pdf_light(shading_, light, states_[id].from, ray.d, &point); });
         if (depth >= c_.settings.max_depth) return;
         disperse(id, point);
-        const Vertex vertex = vertex_at(point, wo, path(id).wavelength);
-        if (!is_specular(vertex.bsdf)) sample_lights(id, vertex, depth);
-        scatter(id, point, vertex, depth);
+        ::new (static_cast<void*>(&a.vertex)) Vertex(vertex_at(point, wo, path(id).wavelength));
+        if (++waiting_ == kTogether) leave(depth);
+    }
+
+    /// The paths that wait go on.
+    void leave(uint32_t depth) noexcept {
+        choose_lights(depth);
+        for (uint32_t i = 0; i < waiting_; ++i) {
+            const Arrival& a = arrivals_[i];
+            if (!is_specular(a.vertex.bsdf)) sample_lights(a.id, a.vertex, i, depth);
+            scatter(a.id, a.point, a.vertex, depth);
+        }
+        waiting_ = 0;
     }
 
     /// Emission that the ray from the last vertex has found, weighted against the light samples taken there, which find
@@ -95,11 +125,40 @@ private:
             c_.recorder->emission(radiance, state.bsdf_pdf, static_cast<float>(density), weight, contribution);
     }
 
-    void sample_lights(uint32_t id, const Vertex& at, uint32_t depth) noexcept {
+    /// For all that wait, each step for all of them before the next, so that their waits for memory overlap.
+    void choose_lights(uint32_t depth) noexcept {
+        const uint32_t dimension = kOneLightDimension + 4 * depth;
+        bool any = false;
+        for (uint32_t i = 0; i < waiting_; ++i) {
+            const Arrival& a = arrivals_[i];
+            State& state = states_[a.id];
+            light_of_[i].tree = nullptr, light_of_[i].chosen.reset();
+            if (lights_.lights() == 0 || is_specular(a.vertex.bsdf)) continue;
+            state.all_lights = state.direct_bounces == ~0u && lights_.lights() <= kFewLights;
+            if (state.direct_bounces == ~0u) state.direct_bounces = depth + 1;
+            if (state.all_lights) continue;
+            const uint32_t bits = c_.sampler.bits(path(a.id).key, dimension + 3);
+            light_of_[i] = lights_.query(choice_, receiver_at(a.vertex.from), bits);
+            any = true;
+        }
+        if (!any) return;
+        LightTree::answer({light_of_.data(), waiting_});
+        for (uint32_t i = 0; i < waiting_; ++i) {
+            const Arrival& a = arrivals_[i];
+            part_of_[i].tree = nullptr, part_of_[i].chosen.reset();
+            if (!light_of_[i].chosen) continue;
+            const uint32_t bits = c_.sampler.bits(path(a.id).key, dimension + 2);
+            part_of_[i] = part_query(shading_, light_of_[i].chosen->light, a.vertex.from, bits);
+        }
+        LightTree::answer({part_of_.data(), waiting_});
+        for (const PartMemory what : {PartMemory::indices, PartMemory::corners})
+            for (uint32_t i = 0; i < waiting_; ++i)
+                if (part_of_[i].chosen) prefetch_part(shading_, light_of_[i].chosen->light, part_of_[i], what);
+    }
+
+    void sample_lights(uint32_t id, const Vertex& at, uint32_t place, uint32_t depth) noexcept {
         if (lights_.lights() == 0) return;
-        State& state = states_[id];
-        state.all_lights = state.direct_bounces == ~0u && lights_.lights() <= kFewLights;
-        if (state.direct_bounces == ~0u) state.direct_bounces = depth + 1;
+        const State& state = states_[id];
         const float limit = limit_of(state, depth + 1);
         if (state.all_lights) {
             sample_all_lights(id, at, limit, [&](uint32_t n, float light_pdf, float bsdf_pdf) {
@@ -111,13 +170,13 @@ private:
         const uint32_t dimension = kOneLightDimension + 4 * depth;
         const Vec2 u = c_.sampler.get_2d(path.key, dimension);
         const uint32_t part = c_.sampler.bits(path.key, dimension + 2);
-        const uint32_t bits = c_.sampler.bits(path.key, dimension + 3);
-        const std::optional<ChosenLight> chosen = lights_.choose(choice_, receiver_at(at.from), bits);
+        const std::optional<ChosenLight>& chosen = light_of_[place].chosen;
         if (!chosen) return;
         const double probability = chosen->probability;
         sample_towards(
             id, at, chosen->light, part, u, path.throughput / static_cast<float>(probability), limit,
-            [&](float light_pdf, float bsdf_pdf) { return light_weight(light_pdf * probability, bsdf_pdf); });
+            [&](float light_pdf, float bsdf_pdf) { return light_weight(light_pdf * probability, bsdf_pdf); },
+            &part_of_[place]);
     }
 
     void scatter(uint32_t id, const SurfacePoint& point, const Vertex& at, uint32_t depth) noexcept {
@@ -187,6 +246,9 @@ private:
     const LightChoice choice_;
     const float limit_;  ///< for contributions that are not direct light
     std::vector<State> states_;
+    std::vector<Arrival> arrivals_;  ///< of them the first waiting_
+    uint32_t waiting_ = 0;
+    std::array<LightQuery, kTogether> light_of_, part_of_;  ///< the light that each of them chooses, and its triangle
 };
 
 }  // namespace

@@ -128,9 +128,10 @@ protected:
     Vertex vertex_in_medium(uint32_t id, const Ray& ray) const noexcept;
     /// One direction towards one light. `scale` stands for the path's throughput over the expected number of samples,
     /// `limit` is for what comes of it (see clamped()), and weight(light's density, BSDF's) gives the sample's weight.
+    /// `part`: see sample_light().
     template <class Weight>
     void sample_towards(uint32_t id, const Vertex& at, uint32_t light, uint32_t choice, Vec2 u, Rgb scale, float limit,
-                        Weight weight) noexcept;
+                        Weight weight, const LightQuery* part = nullptr) noexcept;
     /// Every light, as often as it wants; `weight` is also told how often that is: weight(n, light's density, BSDF's).
     /// Samples of one light continue one low-discrepancy sequence: sample i of n within camera sample s is its point
     /// s n + i.
@@ -193,8 +194,8 @@ private:
 
 template <class Weight>
 void WavefrontIntegrator::sample_towards(uint32_t id, const Vertex& at, uint32_t light, uint32_t choice, Vec2 u,
-                                         Rgb scale, float limit, Weight weight) noexcept {
-    const std::optional<LightSample> towards = sample_light(shading_, light, at.from, choice, u, density_);
+                                         Rgb scale, float limit, Weight weight, const LightQuery* part) noexcept {
+    const std::optional<LightSample> towards = sample_light(shading_, light, at.from, choice, u, density_, part);
     if (!towards) return;
     const float density = towards->pdf > 0 ? towards->pdf : 1.0f;
     const BsdfEval scattered = eval(at.bsdf, at.wo, towards->wi);

@@ -17,9 +17,38 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept 
     return std::visit([](const auto& kind) { return samples_wanted(kind); }, scene.scene.lights[light]);
 }
 
+namespace {
+
+/// Null where the light is none, or has no parts.
+const MeshEmitter* mesh_emitter(const ShadingScene& scene, uint32_t light) {
+    return std::get_if<MeshEmitter>(&scene.lights[light].emitter);
+}
+
+}  // namespace
+
+LightQuery part_query(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, uint32_t choice) noexcept {
+    LightQuery out;
+    if (const MeshEmitter* emitter = mesh_emitter(scene, light))
+        out = {&emitter->triangles, receiver_at(from), choice, kLightValues, {}};
+    return out;
+}
+
+void prefetch_part(const ShadingScene& scene, uint32_t light, const LightQuery& part, PartMemory what) noexcept {
+    if (!part.chosen) return;
+    const Mesh& mesh = scene.scene.meshes[index(mesh_emitter(scene, light)->mesh)];
+    const uint32_t* corner = mesh.indices.data() + size_t(3) * part.chosen->light;
+    if (what == PartMemory::indices) {
+        __builtin_prefetch(corner);
+        __builtin_prefetch(corner + 2);
+        return;
+    }
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[corner[k]]);
+}
+
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
-                                        uint32_t choice, Vec2 u, EnvironmentDensity density) noexcept {
-    const LightContext context{scene, light, density};
+                                        uint32_t choice, Vec2 u, EnvironmentDensity density,
+                                        const LightQuery* part) noexcept {
+    const LightContext context{scene, light, density, part};
     return std::visit([&](const auto& kind) { return sample_kind(kind, context, from, choice, u); },
                       scene.scene.lights[light]);
 }

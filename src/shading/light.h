@@ -6,6 +6,7 @@
 #include "math/ray.h"
 #include "math/vector.h"
 #include "shading/environment.h"
+#include "shading/light_tree.h"
 #include "shading/surface.h"
 #include "steradian/scene.h"
 
@@ -27,6 +28,13 @@ struct LightSample {
 /// Number of shadow rays that light `light` wants per camera sample.
 uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
 
+/// The choice among the parts of a light that sample_light() would make, as a question that LightTree::answer() can
+/// answer together with others; one without a tree where there is nothing to choose.
+LightQuery part_query(const ShadingScene& scene, uint32_t light, const SurfacePoint& from, uint32_t choice) noexcept;
+/// Has the memory fetched that sampling a chosen part reads: first what says where the rest is, then the rest.
+enum class PartMemory : uint8_t { indices, corners };
+void prefetch_part(const ShadingScene& scene, uint32_t light, const LightQuery& part, PartMemory what) noexcept;
+
 /// One direction towards one light of scene.lights. `choice`: 32 uniform bits for choosing among its parts, used where
 /// it has several. Nothing when no light can arrive from it. The density may depend on the point: a constant
 /// environment is sampled by the cosine about the shading normal, a rectangle by its solid angle, a sphere by its cone.
@@ -34,9 +42,12 @@ uint32_t light_sample_count(const ShadingScene& scene, uint32_t light) noexcept;
 /// `from` must be turned to the side that is to be lit, see facing(): unless from.both_sides says otherwise, a constant
 /// environment is sampled on the side of from.ns only, and a surface that is seen from behind would get nothing from
 /// it. A point in space has no normals: ng and ns are zero.
+///
+/// `part`: the light's part_query(), answered; null where it was not asked.
 std::optional<LightSample> sample_light(const ShadingScene& scene, uint32_t light, const SurfacePoint& from,
                                         uint32_t choice, Vec2 u,
-                                        EnvironmentDensity density = EnvironmentDensity::complete) noexcept;
+                                        EnvironmentDensity density = EnvironmentDensity::complete,
+                                        const LightQuery* part = nullptr) noexcept;
 
 /// The density with which sample_light chooses wi, given that a ray from `from` along wi sees the light at `hit` (for
 /// the environment `hit` is null). 0 for delta lights.

@@ -145,26 +145,34 @@ uint64_t LightSelection::distant_values(LightChoice by, const LightReceiver& at)
 
 std::optional<ChosenLight> LightSelection::choose(LightChoice by, const LightReceiver& at,
                                                   uint32_t choice) const noexcept {
-    if (lights_ == 0) return std::nullopt;
+    const LightQuery query = this->query(by, at, choice);
+    return query.tree ? query.tree->choose(query.at, query.choice, query.values) : query.chosen;
+}
+
+LightQuery LightSelection::query(LightChoice by, const LightReceiver& at, uint32_t choice) const noexcept {
+    LightQuery out;
+    const auto answer = [&](uint32_t light) { out.chosen = ChosenLight{light, probability(by, at, light)}; };
+    if (lights_ == 0) return out;
     if (by == LightChoice::uniform) {
-        const uint32_t light = run_of(choice, lights_, kLightValues);
-        return ChosenLight{light, probability(by, at, light)};
+        answer(run_of(choice, lights_, kLightValues));
+        return out;
     }
     const uint64_t distant = distant_values(by, at), others = kLightValues - distant;
     if (choice < distant) {
-        const uint32_t light = distant_[run_of(choice, distant_.size(), distant)];
-        return ChosenLight{light, probability(by, at, light)};
+        answer(distant_[run_of(choice, distant_.size(), distant)]);
+        return out;
     }
     const auto x = static_cast<uint32_t>(choice - distant);
-    if (by == LightChoice::bvh) return tree_.choose(at, x, others);
-    if (cumulative_.empty()) return std::nullopt;
+    if (by == LightChoice::bvh) return {&tree_, at, x, others, {}};
+    if (cumulative_.empty()) return out;
     // The last light whose run begins at or before x.
     uint32_t lo = 0, hi = static_cast<uint32_t>(cumulative_.size());
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
         (first_by(cumulative_, middle, others) <= x ? lo : hi) = middle;
     }
-    return ChosenLight{lo, probability(by, at, lo)};
+    answer(lo);
+    return out;
 }
 
 double LightSelection::probability(LightChoice by, const LightReceiver& at, uint32_t light) const noexcept {

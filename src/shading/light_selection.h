@@ -27,6 +27,9 @@ public:
 
     /// `choice`: 32 uniform bits. Nothing where no light can contribute, or where bounds promised too much.
     std::optional<ChosenLight> choose(LightChoice by, const LightReceiver& at, uint32_t choice) const noexcept;
+    /// The same as a question, which LightTree::answer() can answer together with others; answered already where no
+    /// tree is needed.
+    LightQuery query(LightChoice by, const LightReceiver& at, uint32_t choice) const noexcept;
     /// With which choose() finds `light`.
     double probability(LightChoice by, const LightReceiver& at, uint32_t light) const noexcept;
 

@@ -266,6 +266,38 @@ bool divide(const LightNode& node, const LightReceiver& at, uint64_t values, Run
     return true;
 }
 
+/// The way of one choice down its tree.
+class Descent {
+public:
+    Descent() = default;  // of no meaning, and for nothing
+    explicit Descent(const LightQuery& query)
+        : nodes_(query.tree->nodes().data()), node_(nodes_), x_(query.choice), values_(query.values) {
+        prefetch(*node_);
+    }
+
+    /// One node further. False at the end, where the query is answered if it found a light.
+    bool step(LightQuery& query) {
+        Runs runs;
+        if (!divide(*node_, query.at, values_, runs)) return false;
+        uint32_t k = 0;
+        for (int i = 0; i + 1 < LightNode::kWidth; ++i) k += x_ >= runs.end[i];
+        x_ -= runs.begin(k);
+        values_ = runs.values(k);
+        const uint32_t child = node_->child[k];
+        if (node_->lights[k] == 1) {
+            query.chosen = ChosenLight{child, static_cast<double>(values_) * 0x1p-32};
+            return false;
+        }
+        node_ = nodes_ + child;
+        prefetch(*node_);
+        return true;
+    }
+
+private:
+    const LightNode *nodes_, *node_;
+    uint64_t x_, values_;
+};
+
 }  // namespace
 
 bool LightTree::reaches(const LightReceiver& at) const noexcept {
@@ -276,18 +308,33 @@ bool LightTree::reaches(const LightReceiver& at) const noexcept {
 
 std::optional<ChosenLight> LightTree::choose(const LightReceiver& at, uint32_t choice, uint64_t values) const noexcept {
     if (empty()) return std::nullopt;
-    uint64_t x = choice;
-    for (uint32_t node = 0;;) {
-        Runs runs;
-        if (!divide(nodes_[node], at, values, runs)) return std::nullopt;
-        uint32_t k = 0;
-        for (int i = 0; i + 1 < LightNode::kWidth; ++i) k += x >= runs.end[i];
-        x -= runs.begin(k);
-        values = runs.values(k);
-        const uint32_t child = nodes_[node].child[k];
-        if (nodes_[node].lights[k] == 1) return ChosenLight{child, static_cast<double>(values) * 0x1p-32};
-        node = child;
-        prefetch(nodes_[node]);
+    LightQuery query{this, at, choice, values, {}};
+    Descent way(query);
+    while (way.step(query)) {
+    }
+    return query.chosen;
+}
+
+void LightTree::answer(std::span<LightQuery> queries) noexcept {
+    constexpr size_t kTogether = 16;
+    Descent ways[kTogether];
+    uint32_t of[kTogether];
+    for (; !queries.empty(); queries = queries.subspan(std::min(kTogether, queries.size()))) {
+        size_t under_way = 0;
+        for (size_t i = 0; i < std::min(kTogether, queries.size()); ++i) {
+            if (!queries[i].tree || queries[i].tree->empty()) continue;
+            of[under_way] = static_cast<uint32_t>(i);
+            ways[under_way++] = Descent(queries[i]);
+        }
+        while (under_way > 0) {
+            size_t left = 0;
+            for (size_t i = 0; i < under_way; ++i) {
+                if (!ways[i].step(queries[of[i]])) continue;
+                of[left] = of[i];
+                ways[left++] = ways[i];
+            }
+            under_way = left;
+        }
     }
 }
 

@@ -25,6 +25,17 @@ struct ChosenLight {
     double probability = 0;  ///< a multiple of 2^-32
 };
 
+class LightTree;
+
+/// A choice among the lights of a tree as LightTree::choose() makes it, and the answer.
+struct LightQuery {
+    const LightTree* tree = nullptr;  ///< null: there is nothing to choose, or it is answered
+    LightReceiver at;
+    uint32_t choice = 0;
+    uint64_t values = kLightValues;
+    std::optional<ChosenLight> chosen;
+};
+
 struct alignas(64) LightNode {
     static constexpr int kWidth = 8;
     FourLights children[kWidth / 4];
@@ -55,6 +66,9 @@ public:
     /// can reach the receiver, and sometimes where one could: bounds of many lights promise more than those of each.
     std::optional<ChosenLight> choose(const LightReceiver& at, uint32_t choice,
                                       uint64_t values = kLightValues) const noexcept;
+
+    /// Answers all queries, each as choose() does, and many at a time: while one waits for its node, others compute.
+    static void answer(std::span<LightQuery> queries) noexcept;
 
     /// With which choose() finds `light`. 0 where it cannot contribute.
     double probability(const LightReceiver& at, uint32_t light, uint64_t values = kLightValues) const noexcept;

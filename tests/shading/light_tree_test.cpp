@@ -138,6 +138,102 @@ TEST(LightTree, FrequenciesFollowProbabilities) {
     }
 }
 
+/// Trees from one light to hundreds, one without any, and questions without a tree: however many are asked at once.
+TEST(LightTree, AnswersTogetherAreThoseOfEachByItself) {
+    test::Random random(9);
+    std::vector<LightTree> trees(1);
+    for (const size_t n : {1, 2, 8, 9, 40, 700}) trees.emplace_back(random_lights(random, n));
+    int chosen = 0, nothing = 0;
+    for (size_t count = 0; count < 100; ++count) {
+        std::vector<LightQuery> queries(count);
+        for (LightQuery& q : queries) {
+            q.at = random_receiver(random);
+            q.values = random.between(0, 1) < 0.5 ? kLightValues : kLightValues / 2 + 7;
+            q.choice = static_cast<uint32_t>(random.between(0, 1) * static_cast<double>(q.values));
+            if (random.between(0, 1) < 0.9) q.tree = &trees[random.bits32() % trees.size()];
+        }
+        LightTree::answer(queries);
+        for (const LightQuery& q : queries) {
+            const auto alone = q.tree ? q.tree->choose(q.at, q.choice, q.values) : std::nullopt;
+            ASSERT_EQ(q.chosen.has_value(), alone.has_value());
+            ++(alone ? chosen : nothing);
+            if (!alone) continue;
+            EXPECT_EQ(q.chosen->light, alone->light);
+            EXPECT_EQ(q.chosen->probability, alone->probability);
+        }
+    }
+    EXPECT_GT(chosen, 1000);
+    EXPECT_GT(nothing, 500);
+}
+
+/// Shares by importance, as documented, worked out without runs: one value for each light below a child that counts,
+/// and of the rest its share.
+TEST(LightTree, ProbabilitiesAreSharesOfImportance) {
+    test::Random random(10);
+    for (int round = 0; round < 200; ++round) {
+        const auto n = static_cast<uint32_t>(1 + random.between(0, round < 190 ? 70 : 2000));
+        const LightTree tree(random_lights(random, n));
+        const LightReceiver at = random_receiver(random);
+        std::vector<double> expected(n);
+        const auto share = [&](const auto& self, uint32_t index, double values) -> void {
+            const LightNode& node = tree.nodes()[index];
+            double importance[LightNode::kWidth], total = 0, lights = 0;
+            for (int k = 0; k < LightNode::kWidth; k += 4) light_importance(node.children[k / 4], at, importance + k);
+            for (int k = 0; k < LightNode::kWidth; ++k) {
+                total += importance[k];
+                if (importance[k] > 0) lights += node.lights[k];
+            }
+            for (int k = 0; k < LightNode::kWidth; ++k) {
+                if (!(importance[k] > 0)) continue;
+                const double own = node.lights[k] + (values - lights) * (importance[k] / total);
+                if (node.lights[k] == 1)
+                    expected[node.child[k]] = own;
+                else
+                    self(self, node.child[k], own);
+            }
+        };
+        share(share, 0, 0x1p32);
+        // Runs begin and end at whole numbers: each level moves an end by one value at most.
+        for (uint32_t i = 0; i < n; ++i)
+            EXPECT_NEAR(tree.probability(at, i) * 0x1p32, expected[i], 70 + 1e-6 * expected[i]) << round << " " << i;
+    }
+}
+
+/// The children of a node hold the lights that they are said to hold, each light once, and within the bounds.
+TEST(LightTree, NodesHoldWhatTheySay) {
+    test::Random random(11);
+    for (const size_t n : {1, 5, 8, 9, 63, 900}) {
+        const std::vector<LightBounds> lights = random_lights(random, n);
+        const LightTree tree(lights);
+        std::vector<int> seen(n);
+        const auto count = [&](const auto& self, uint32_t index, FourLights around, int lane, bool root) -> uint32_t {
+            const LightNode& node = tree.nodes()[index];
+            uint32_t all = 0;
+            double strength = 0;
+            for (int k = 0; k < LightNode::kWidth; ++k) {
+                const FourLights& four = node.children[k / 4];
+                EXPECT_EQ(node.lights[k] > 0, four.strength[k % 4] > 0);
+                if (node.lights[k] == 0) continue;
+                strength += four.strength[k % 4];
+                all += node.lights[k];
+                if (node.lights[k] == 1) {
+                    ++seen[node.child[k]];
+                    const Vec3d centre = (lights[node.child[k]].lo + lights[node.child[k]].hi) * 0.5;
+                    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(four.center[axis][k % 4], centre[axis], 1e-5);
+                } else {
+                    EXPECT_EQ(self(self, node.child[k], four, k % 4, false), node.lights[k]);
+                }
+            }
+            if (!root) {
+                EXPECT_NEAR(strength, around.strength[lane], 1e-5 * strength);
+            }
+            return all;
+        };
+        EXPECT_EQ(count(count, 0, {}, 0, true), n);
+        EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(n));
+    }
+}
+
 /// A point of each light and a normal within its cone: where its light arrives, the probability is not 0.
 TEST(LightTree, NothingThatContributesIsLeftOut) {
     test::Random random(4);
@@ -280,6 +376,35 @@ TEST(LightTree, OfAMeshWithDegenerateTriangles) {
         EXPECT_GT(pdf_light(world.shading, 0, from, wi, &point), 0) << i;
     }
     EXPECT_GT(seen, 1000);
+}
+
+/// Asking for the triangle first and for the sample with it then is asking for the sample.
+TEST(LightTree, AChosenPartGivesTheSampleOfItsChoice) {
+    test::Random random(12);
+    int with_tree = 0, without = 0;
+    for (const test::AreaLightCase& light : test::area_light_cases()) {
+        const World world(light.scene);
+        for (int i = 0; i < 200; ++i) {
+            const SurfacePoint from = test::receiver(point_in(random, 2), direction(random));
+            const uint32_t choice = random.bits32();
+            const Vec2 u = random.uniform2();
+            LightQuery part = part_query(world.shading, 0, from, choice);
+            ++(part.tree ? with_tree : without);
+            LightTree::answer({&part, 1});
+            prefetch_part(world.shading, 0, part, PartMemory::indices);  // of nothing, too
+            prefetch_part(world.shading, 0, part, PartMemory::corners);
+            const auto density = EnvironmentDensity::complete;
+            const auto split = sample_light(world.shading, 0, from, choice, u, density, &part);
+            const auto whole = sample_light(world.shading, 0, from, choice, u);
+            ASSERT_EQ(split.has_value(), whole.has_value()) << light.name;
+            if (!whole) continue;
+            EXPECT_EQ(split->wi, whole->wi);
+            EXPECT_EQ(split->pdf, whole->pdf);
+            EXPECT_EQ(split->radiance, whole->radiance);
+        }
+    }
+    EXPECT_GT(with_tree, 500);
+    EXPECT_GT(without, 500);
 }
 
 /// The cone around two cones holds the rim of each.

@@ -38,7 +38,7 @@ inline bool is_on_flat(const AreaLight& light, const LightContext& context, cons
 inline std::optional<LightSample> sample_kind(const AreaLight& light, const LightContext& context,
                                               const SurfacePoint& from, uint32_t choice, Vec2 u) {
     if (is_black(light.radiance) || is_on_flat(light, context, from)) return std::nullopt;
-    const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided};
+    const EmitterContext emitter_context{context.scene, receiver_at(from), light.two_sided, 0, context.part};
     const std::optional<EmitterSample> at =
         std::visit([&](const auto& emitter) { return sample_emitter(emitter, emitter_context, from.p, choice, u); },
                    context.data().emitter);

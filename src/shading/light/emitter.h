@@ -77,7 +77,8 @@ struct EmitterContext {
     const ShadingScene& scene;
     LightReceiver receiver;
     bool two_sided = false;
-    uint32_t prim = 0;  ///< for densities: the primitive that is seen
+    uint32_t prim = 0;                 ///< for densities: the primitive that is seen
+    const LightQuery* part = nullptr;  ///< for samples: see sample_light()
 };
 
 /// Per solid angle at a distance, from per area; 0 where the surface is seen edge-on.

@@ -18,6 +18,7 @@ struct LightContext {
     const ShadingScene& scene;
     uint32_t light = 0;
     EnvironmentDensity density = EnvironmentDensity::complete;
+    const LightQuery* part = nullptr;  ///< see sample_light()
     const ShadingScene::LightData& data() const { return scene.lights[light]; }
 };
 

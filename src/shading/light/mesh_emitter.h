@@ -63,7 +63,8 @@ inline std::optional<EmitterSample> sample_emitter(const MeshEmitter& emitter, c
     const ShadingScene& scene = context.scene;
     const ShadingScene::TransformData& instance = scene.transform_of(index(emitter.instance));
     const Affine& transform = scene.scene.instances[index(emitter.instance)].world_from_object;
-    const std::optional<ChosenLight> chosen = emitter.triangles.choose(context.receiver, choice);
+    const std::optional<ChosenLight> chosen =
+        context.part ? context.part->chosen : emitter.triangles.choose(context.receiver, choice);
     if (!chosen) return std::nullopt;
     const EmitterTriangle object = object_triangle(scene.scene.meshes[index(emitter.mesh)], chosen->light);
     const EmitterTriangle world = instance.identity ? object : world_triangle(transform, object);
