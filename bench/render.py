@@ -9,7 +9,8 @@ Writes FOLDER/render.json (for a later --against), render.md (the table) and ren
 The error is sqrt(mean(((I - R) / (R + 0.01))²)) over all pixels and colours, the quantity of --target-error. The truth R
 is the mean of two long renders with seeds of their own; what their difference says R itself is off by is taken out. They
 are made where they are missing and kept in the folder of references, named by what the scene file says: they take a while.
-A render is ended by an interrupt (Ctrl-C) after the given seconds, and counted with the seconds that it reports.
+A render is ended by --time-limit, so that all pixels have the same number of samples, and counted with the seconds that it
+reports.
 
 Needs nothing but Python's standard library.
 """
@@ -20,7 +21,6 @@ import json
 import math
 import pathlib
 import platform
-import signal
 import subprocess
 import sys
 import tempfile
@@ -44,20 +44,13 @@ def read_pfm(path):
     return values
 
 
-def steradian(command, scene, output, *options, stop_after=None):
-    """Runs one render and returns its statistics. After `stop_after` seconds it is interrupted and writes what it has."""
+def steradian(command, scene, output, *options):
+    """Runs one render and returns its statistics."""
     words = [command, "render", str(scene), "--quiet", "--json", "-o", str(output), *map(str, options)]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
-    if stop_after is not None:
-        try:
-            process.wait(stop_after)
-            raise SystemExit(f"{scene}: done before {stop_after} seconds were over")
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGINT)
-    said = process.communicate()[0]
-    if process.returncode not in ((0,) if stop_after is None else (130,)):
+    process = subprocess.run(words, stdout=subprocess.PIPE, text=True)
+    if process.returncode != 0:
         raise SystemExit(f"{' '.join(words)}: failed with {process.returncode}")
-    return json.loads(said)
+    return json.loads(process.stdout)
 
 
 def reference(arguments, scene):
@@ -92,9 +85,7 @@ def measure(arguments, scene, work):
     for seconds in arguments.seconds:
         picture = work / "picture.pfm"
         threads = ["--threads", arguments.threads] if arguments.threads else []
-        s = steradian(arguments.command, scene, picture, "--spp", 10**7, *threads, stop_after=seconds)
-        if s["min_samples"] == 0:
-            raise SystemExit(f"{scene.stem}: {seconds} seconds are too few, some pixels have no sample yet")
+        s = steradian(arguments.command, scene, picture, "--time-limit", f"{seconds:g}s", *threads)
         error, of_truth = error_of(read_pfm(picture), truth, variance)
         rows.append({"wanted": seconds, "seconds": s["seconds"], "samples": s["samples"], "threads": s["threads"],
                      "spp": s["samples"] / (s["width"] * s["height"]), "error": error, "error_of_reference": of_truth})
