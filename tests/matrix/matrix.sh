@@ -5,7 +5,8 @@
 #
 # COMMAND... runs the program: its path, or an emulator and its path. The ways: 1, 2 and 7 threads, three tile sizes, both
 # builders of the hierarchy and both of its layouts (a covering part of the combinations, with --full more of them), and a
-# crop against the same part of the whole picture (but not with a target for the error). --update writes the hashes of this run to golden.txt instead.
+# crop against the same part of the whole picture (but not with a target for the error). --update writes the hashes of this
+# run to golden.txt instead, with --only in the place of that one.
 # The last line is "N passed, N failed". Needs a shell and the usual small tools only.
 set -euo pipefail
 
@@ -117,6 +118,8 @@ while read -r name scene options; do
         printf 'FAILED %s\n%s\n' "$name" "$message"
     fi
 done <"$here/cases.txt"
-[ "$update" = no ] || [ -n "$only" ] || [ "$failed" -gt 0 ] || cp "$work/golden" "$here/golden.txt"
+if [ "$update" = yes ] && [ "$failed" -eq 0 ]; then
+    if [ -z "$only" ]; then cp "$work/golden" "$here/golden.txt"; else sed -i "s/^$only .*/$(cat "$work/golden")/" "$here/golden.txt"; fi
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
