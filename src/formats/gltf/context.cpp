@@ -10,7 +10,7 @@ namespace steradian::gltf {
 namespace {
 
 /// What can be required of us: all of it is honoured, or reported where it is not.
-constexpr std::array<std::string_view, 20> kExtensions{"KHR_draco_mesh_compression",
+constexpr std::array<std::string_view, 21> kExtensions{"KHR_draco_mesh_compression",
                                                        "KHR_lights_punctual",
                                                        "KHR_materials_anisotropy",
                                                        "KHR_materials_clearcoat",
@@ -19,6 +19,7 @@ constexpr std::array<std::string_view, 20> kExtensions{"KHR_draco_mesh_compressi
                                                        "KHR_materials_emissive_strength",
                                                        "KHR_materials_ior",
                                                        "KHR_materials_iridescence",
+                                                       "KHR_materials_pbrSpecularGlossiness",
                                                        "KHR_materials_sheen",
                                                        "KHR_materials_specular",
                                                        "KHR_materials_transmission",

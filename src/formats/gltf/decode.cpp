@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "formats/gltf/images.h"
+#include "formats/gltf/specular_glossiness.h"
 #include "image/decode.h"
 #include "math/vector.h"
 
@@ -75,6 +76,8 @@ uint64_t Images::claim(const Image& image) {
     for (size_t plane = 0; plane < image.planes.size(); ++plane)
         if (image.planes[plane])
             kept += header->texels() * value * (plane == 0 ? min_of<uint64_t>(header->channels, 3) : 1);
+    for (const auto& [plane, id] : image.converted)
+        kept += header->texels() * (plane.kind == SpecularGlossinessPlane::Kind::metal ? 3 : 1);
     context_.budget.take(max_of(whole, kept), context_.source, image.offset);
     return whole;
 }
@@ -87,6 +90,7 @@ void Images::keep(const Image& image, RawImage whole) {
         const auto channel = channel_of(whole, plane);
         images[index(*id_of(plane))] = channel ? channels(whole, *channel, 1) : white();
     }
+    for (const auto& [plane, id] : image.converted) images[index(id)] = convert_specular_glossiness(whole, plane);
     if (const auto id = id_of(Plane::color)) {
         const bool has_alpha = whole.channels % 2 == 0;
         images[index(*id)] =

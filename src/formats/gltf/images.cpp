@@ -84,17 +84,26 @@ TextureId Images::texture(const TextureUse& use, Plane plane, ColorSpace space) 
                          {use.uv_scale.x, use.uv_scale.y, use.uv_offset.x, use.uv_offset.y, use.uv_rotation}};
     if (const auto known = textures_.find(key); known != textures_.end()) return known->second;
     const OpenTexture& opened = open_texture(use.texture, use.offset);
+    return textures_.emplace(key, add_texture(use, opened, plane_of(opened.image, plane), space)).first->second;
+}
+
+TextureId Images::texture(const TextureUse& use, const SpecularGlossinessPlane& plane) {
+    const OpenTexture& opened = open_texture(use.texture, use.offset);
+    const bool color = plane.kind == SpecularGlossinessPlane::Kind::metal;
+    return add_texture(use, opened, plane_of(opened.image, plane), color ? ColorSpace::srgb : ColorSpace::linear);
+}
+
+TextureId Images::add_texture(const TextureUse& use, const OpenTexture& opened, ImageId image, ColorSpace space) {
     ImageTexture out = opened.sampled;
     out.color_space = space;
     out.scale = use.uv_scale;
     out.offset = use.uv_offset;
     out.rotation = use.uv_rotation;
     out.uv_set = use.uv_set;
-    out.image = plane_of(opened.image, plane);
+    out.image = image;
     context_.budget.take(sizeof(Texture) + opened.name.size(), context_.source, use.offset);
     const Assets::Here here(context_.assets, context_.tables.textures.elements[use.texture].offset());
-    const TextureId id = context_.assets.add_texture(out, opened.name);
-    return textures_.emplace(key, id).first->second;
+    return context_.assets.add_texture(out, opened.name);
 }
 
 Images::Image Images::open(uint32_t number) {
@@ -121,14 +130,29 @@ Images::Image Images::find(uint32_t number) {
     return out;
 }
 
-ImageId Images::plane_of(uint32_t number, Plane plane) {
+Images::Image& Images::opened(uint32_t number) {
     auto found = images_.find(number);
     if (found == images_.end()) found = images_.emplace(number, open(number)).first;
-    Image& image = found->second;
-    auto& id = image.planes[static_cast<size_t>(plane)];
+    return found->second;
+}
+
+ImageId Images::add_plane(const Image& image) {
     const Assets::Here here(context_.assets, image.offset);
-    if (!id) id = context_.assets.add_image({}, image.name);
+    return context_.assets.add_image({}, image.name);
+}
+
+ImageId Images::plane_of(uint32_t number, Plane plane) {
+    Image& image = opened(number);
+    auto& id = image.planes[static_cast<size_t>(plane)];
+    if (!id) id = add_plane(image);
     return *id;
+}
+
+ImageId Images::plane_of(uint32_t number, const SpecularGlossinessPlane& plane) {
+    Image& image = opened(number);
+    for (const auto& [known, id] : image.converted)
+        if (known == plane) return id;
+    return image.converted.emplace_back(plane, add_plane(image)).second;
 }
 
 }  // namespace steradian::gltf

@@ -14,6 +14,14 @@ namespace steradian::gltf {
 /// each as an image of its own, so that nothing is stored that nobody reads.
 enum class Plane : uint8_t { color, red, green, blue, alpha };
 
+/// What a map of KHR_materials_pbrSpecularGlossiness becomes (specular_glossiness.h), times the factors beside it.
+struct SpecularGlossinessPlane {
+    enum class Kind : uint8_t { metalness, metal, dielectric, roughness } kind{};
+    Rgb specular{1, 1, 1};
+    float glossiness = 1;
+    bool operator==(const SpecularGlossinessPlane&) const = default;
+};
+
 /// What an object of the file says about a texture ("baseColorTexture").
 struct TextureUse {
     uint32_t texture = 0;
@@ -29,6 +37,7 @@ public:
 
     std::optional<TextureUse> use(const Object& object, std::string_view key);
     TextureId texture(const TextureUse& use, Plane plane, ColorSpace space);
+    TextureId texture(const TextureUse& use, const SpecularGlossinessPlane& plane);
 
     /// Decodes what textures have been made of, on all cores. Until then the scene's images are empty.
     void decode();
@@ -40,6 +49,7 @@ private:
         std::string name;                          ///< for messages
         size_t offset = 0;
         std::array<std::optional<ImageId>, 5> planes{};
+        std::vector<std::pair<SpecularGlossinessPlane, ImageId>> converted{};
     };
     /// What an element of "textures" says.
     struct OpenTexture {
@@ -50,7 +60,11 @@ private:
     /// `offset`: of what uses it, for messages.
     const OpenTexture& open_texture(uint32_t number, size_t offset);
     const ImageTexture& open_sampler(uint32_t number);
+    Image& opened(uint32_t image);
+    ImageId add_plane(const Image& image);
     ImageId plane_of(uint32_t image, Plane plane);
+    ImageId plane_of(uint32_t image, const SpecularGlossinessPlane& plane);
+    TextureId add_texture(const TextureUse& use, const OpenTexture& opened, ImageId image, ColorSpace space);
     Image open(uint32_t number);
     Image find(uint32_t number);
     uint32_t image_of(const Object& texture, size_t offset);

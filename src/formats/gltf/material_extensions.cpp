@@ -183,10 +183,10 @@ void Materials::read_diffuse_transmission(const Object& material, Reading& r) {
 void Materials::read_weight(const Object& extension, std::string_view key, Plane plane, Reading& r, Remove remove) {
     const auto weight = texture(extension, key, plane, r);
     if (!weight) return;
-    if (r.layers.size() == kMostLayers)
-        no_texture(extension, key);
-    else
+    if (r.takes_another_layer())
         r.layers.push_back({*weight, remove});
+    else
+        no_texture(extension, key);
 }
 
 void Materials::read_extensions(const Object& material, Reading& r) {
@@ -196,14 +196,18 @@ void Materials::read_extensions(const Object& material, Reading& r) {
         r.emission_texture = r.surface.base_color.texture;
         return;
     }
-    read_specular(material, r);
-    read_transmission(material, r);
-    if (const auto dispersion = material.extension("KHR_materials_dispersion")) read_dispersion(*dispersion, r);
+    if (r.metal) {
+        report_excluded(material);
+    } else {
+        read_specular(material, r);
+        read_transmission(material, r);
+        if (const auto dispersion = material.extension("KHR_materials_dispersion")) read_dispersion(*dispersion, r);
+        read_diffuse_transmission(material, r);
+    }
     if (const auto coat = material.extension("KHR_materials_clearcoat")) read_clearcoat(*coat, r);
     if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
     if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);
     if (const auto iridescence = material.extension("KHR_materials_iridescence")) read_iridescence(*iridescence, r);
-    read_diffuse_transmission(material, r);
     if (!r.solid && r.surface.transmission_weight.value > 0) r.surface.geometry_thin_walled = true;
 }
 

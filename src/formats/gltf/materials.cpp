@@ -58,18 +58,22 @@ void Materials::multiply_by_vertices(std::optional<TextureId>& texture, bool alp
     texture = texture ? context_.assets.add_texture(ProductTexture{*texture, *vertices}, "") : *vertices;
 }
 
+void Materials::read_color_and_alpha(const Object& object, std::string_view factors, std::string_view map, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    if (const auto numbers = object.numbers(factors, 4, kAnyNumber)) {
+        for (int c = 0; c < 3; ++c) s.base_color.value[c] = factor((*numbers)[static_cast<size_t>(c)], object, factors);
+        s.geometry_opacity.value = factor((*numbers)[3], object, factors);
+    }
+    r.base_color = images_.use(object, map);
+    s.base_color.texture = texture(object, map, Plane::color, r);
+}
+
 /// Section 3.9.2 of the specification.
 void Materials::read_metallic_roughness(const Object& material, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     const auto pbr = material.object("pbrMetallicRoughness");
     if (!pbr) return;
-    constexpr std::string_view kColor = "baseColorFactor";
-    if (const auto numbers = pbr->numbers(kColor, 4, kAnyNumber)) {
-        for (int c = 0; c < 3; ++c) s.base_color.value[c] = factor((*numbers)[static_cast<size_t>(c)], *pbr, kColor);
-        s.geometry_opacity.value = factor((*numbers)[3], *pbr, kColor);
-    }
-    r.base_color = images_.use(*pbr, "baseColorTexture");
-    s.base_color.texture = texture(*pbr, "baseColorTexture", Plane::color, r);
+    read_color_and_alpha(*pbr, "baseColorFactor", "baseColorTexture", r);
     s.base_metalness.value = unit(*pbr, "metallicFactor", 1);
     s.specular_roughness.value = unit(*pbr, "roughnessFactor", 1);
     s.base_metalness.texture = texture(*pbr, "metallicRoughnessTexture", Plane::blue, r);
@@ -154,7 +158,28 @@ MaterialId Materials::make_unlit(const Reading& r, const std::string& name) {
     return context_.assets.add_material(black, name);
 }
 
+MaterialId Materials::make_split(const Reading& r, const std::string& name) {
+    Reading dielectric = r, metal = r;
+    dielectric.metal.reset(), metal.metal.reset();
+    metal.surface.base_metalness = {1};
+    metal.surface.base_color = r.metal->color;
+    metal.surface.specular_weight = 1;
+    metal.surface.specular_color = {};
+    const FloatInput& weight = r.metal->weight;
+    if (!weight.texture && weight.value == 0) return make_plain(dielectric, name);
+    if (!weight.texture && weight.value == 1) return make_plain(metal, name);
+    MaterialId first = make_plain(dielectric, name);
+    if (r.metal->reflects) {
+        dielectric.surface.specular_weight = 0;
+        const MaterialId matte = make_plain(dielectric, name);
+        first = context_.assets.add_material(MixMaterial{matte, first, {1, r.metal->reflects}}, name);
+    }
+    const MaterialId second = make_plain(metal, name);
+    return context_.assets.add_material(MixMaterial{first, second, weight}, name);
+}
+
 MaterialId Materials::make_plain(const Reading& r, const std::string& name) {
+    if (r.metal && !r.unlit) return make_split(r, name);
     const auto simple = r.unlit ? std::nullopt : make_simple(r, name);
     const MaterialId out = r.unlit  ? make_unlit(r, name)
                            : simple ? context_.assets.add_material(*simple, name)
@@ -202,7 +227,10 @@ Look Materials::finish(const Reading& r, const std::string& name) {
 Look Materials::read(const Object& material, VertexColors colors, const std::string& name) {
     const Assets::Here here(context_.assets, material.offset());
     Reading r = start(colors);
-    read_metallic_roughness(material, r);
+    if (const auto other = material.extension("KHR_materials_pbrSpecularGlossiness"))
+        read_specular_glossiness(*other, r);
+    else
+        read_metallic_roughness(material, r);
     if (colors != VertexColors::none) multiply_by_vertices(r.surface.base_color.texture, false);
     read_alpha(material, r);
     read_emission(material, r);

@@ -43,6 +43,16 @@ private:
         std::optional<uint32_t> tangents;
         std::optional<TextureUse> base_color;
         bool unlit = false;
+        /// Of KHR_materials_pbrSpecularGlossiness: the part of the surface that is metal; the rest is as it stands
+        /// here, to the part `reflects` with its specular layer.
+        struct MetalPart {
+            FloatInput weight;
+            ColorInput color;
+            std::optional<TextureId> reflects;
+        };
+        std::optional<MetalPart> metal;
+        /// How many materials that are no mixes it becomes, without its layers.
+        size_t parts() const { return !metal ? 1u : metal->reflects ? 3u : 2u; }
         bool solid = true;  ///< what transmits encloses a volume; false: it is a thin sheet
         /// Layers that are there as far as a texture says.
         struct Layer {
@@ -50,12 +60,13 @@ private:
             Remove remove;
         };
         std::vector<Layer> layers;
+        /// Each layer doubles the materials.
+        bool takes_another_layer() const { return parts() << (layers.size() + 1) <= kMaxMixed; }
     };
-    static constexpr size_t kMostLayers = 2;  ///< 2² materials are kMaxMixed
-    static_assert(size_t(1) << kMostLayers <= kMaxMixed);
     static Reading start(VertexColors colors);
     Look read(const Object& material, VertexColors colors, const std::string& name);
     Look finish(const Reading& r, const std::string& name);
+    void read_color_and_alpha(const Object& object, std::string_view factors, std::string_view map, Reading& r);
     void read_metallic_roughness(const Object& material, Reading& r);
     void read_alpha(const Object& material, Reading& r);
     void read_emission(const Object& material, Reading& r);
@@ -63,6 +74,7 @@ private:
     void multiply_by_vertices(std::optional<TextureId>& texture, bool alpha);
     MaterialId make(const Reading& r, const std::string& name);
     MaterialId make_plain(const Reading& r, const std::string& name);
+    MaterialId make_split(const Reading& r, const std::string& name);
     MaterialId make_unlit(const Reading& r, const std::string& name);
     std::optional<Material> make_simple(const Reading& r, const std::string& name);
     std::optional<TextureId> texture(const Object& object, std::string_view key, Plane plane, Reading& r);
@@ -72,6 +84,10 @@ private:
     Rgb color(const Object& object, std::string_view key, Rgb fallback, double most = 1);
     /// Of an extension's texture that the scene has no place for.
     void no_texture(const Object& object, std::string_view key);
+
+    // specular_glossiness.cpp
+    void read_specular_glossiness(const Object& extension, Reading& r);
+    void report_excluded(const Object& material);
 
     // material_extensions.cpp, each by its extension.
     void read_extensions(const Object& material, Reading& r);
