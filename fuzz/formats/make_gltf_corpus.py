@@ -170,7 +170,8 @@ def variants():
 TEXTURED_EXTENSIONS = {
     "KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}},
     "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0}, "clearcoatRoughnessFactor": 1,
-                                "clearcoatRoughnessTexture": {"index": 1}},
+                                "clearcoatRoughnessTexture": {"index": 1}, "clearcoatNormalTexture": {"index": 0}},
+    "KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1, "anisotropyTexture": {"index": 1}},
     "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenRoughnessFactor": 1,
                             "sheenRoughnessTexture": {"index": 0}},
     "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceTexture": {"index": 1}},
@@ -180,7 +181,7 @@ TEXTURED_EXTENSIONS = {
 
 
 def textured(picture, kind):
-    f = File(extensionsUsed=sorted(TEXTURED_EXTENSIONS), nodes=[{"mesh": 0}], samplers=[{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}],
+    f = File(extensionsUsed=sorted([*TEXTURED_EXTENSIONS, "KHR_materials_pbrSpecularGlossiness"]), nodes=[{"mesh": 0}, {"mesh": 1}], samplers=[{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}],
              textures=[{"source": 0, "sampler": 0}, {"source": 0}],
              materials=[{"pbrMetallicRoughness": {
                  "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
@@ -188,10 +189,14 @@ def textured(picture, kind):
                  "metallicRoughnessTexture": {"index": 1, "texCoord": 0}},
                  "normalTexture": {"index": 1, "scale": 0.5}, "occlusionTexture": {"index": 1},
                  "emissiveTexture": {"index": 1}, "emissiveFactor": [1, 1, 1], "alphaMode": "MASK", "alphaCutoff": 0.4,
-                 "extensions": TEXTURED_EXTENSIONS}])
+                 "extensions": TEXTURED_EXTENSIONS},
+                 {"extensions": {"KHR_materials_pbrSpecularGlossiness": {
+                     "diffuseFactor": [1, 0.5, 0.2, 1], "diffuseTexture": {"index": 0}, "specularFactor": [0.5, 0.4, 0.3],
+                     "glossinessFactor": 0.7, "specularGlossinessTexture": {"index": 1}}}}])
     f.add("images", {"bufferView": f.view(picture), "mimeType": kind})
-    f.mesh({"POSITION": f.accessor("VEC3", FLOAT, TRIANGLE), "TEXCOORD_0": f.accessor("VEC2", FLOAT, [0, 0, 1, 0, 0, 1])},
-           material=0)
+    attributes = {"POSITION": f.accessor("VEC3", FLOAT, TRIANGLE), "TEXCOORD_0": f.accessor("VEC2", FLOAT, [0, 0, 1, 0, 0, 1])}
+    for material in (0, 1):
+        f.mesh(attributes, material=material)
     return f.binary()
 
 

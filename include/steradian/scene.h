@@ -187,6 +187,28 @@ struct ColorInput {
     std::optional<TextureId> texture = std::nullopt;
 };
 
+/// Normals in tangent space: with (r, g, b) of the texture, 2 r - 1 is along u, 2 g - 1 along -v (up in the image, as
+/// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length. Where a mesh has tangents, they stand
+/// for u and -v.
+struct NormalMap {
+    TextureId texture{};  ///< linear
+    float strength = 1;   ///< multiplies the first two, -100 … 100
+    bool flip_y = false;  ///< 2 g - 1 is along v instead
+};
+
+/// Where the grain of a surface runs: `rotation` degrees from u towards -v, and with a texture as much from the
+/// direction of (2 r - 1, 2 g - 1) along the two. Where a mesh has tangents, they stand for u and -v.
+struct GrainDirection {
+    float rotation = 0;
+    std::optional<TextureId> texture = std::nullopt;  ///< linear
+};
+
+/// How an anisotropy a and a roughness r say how rough a surface is: α along the grain and across it.
+enum class GrainShape : uint8_t {
+    open_pbr,  ///< r² √(2 / (1 + (1 - a)²)), and 1 - a of that: the highlight becomes longer and narrower
+    gltf,      ///< r² (1 - a²) + a², and r²: it becomes longer
+};
+
 /// OpenPBR Surface 1.1, both sides: a matte, glassy or metallic base below a coat and fuzz. Names, meaning and defaults
 /// are those of the specification; weights, roughnesses and anisotropies are in [0, 1]. Subsurface scattering is
 /// diffuse. Transmission is tinted at the surface by its colour, and by what the interior absorbs: where the
@@ -202,7 +224,9 @@ struct OpenPbrMaterial {
     ColorInput specular_color{};  ///< of metals: at 82 degrees; at most 1
     FloatInput specular_roughness{0.3f};
     float specular_ior = 1.5f;  ///< inside over outside, > 0
-    float specular_roughness_anisotropy = 0;
+    FloatInput specular_roughness_anisotropy{0};
+    GrainShape specular_grain_shape = GrainShape::open_pbr;
+    GrainDirection geometry_tangent{};  ///< of the base
     FloatInput transmission_weight{0};
     ColorInput transmission_color{};
     float transmission_dispersion_scale = 0;         ///< divides the Abbe number; 0: no dispersion. In [0, 1]
@@ -219,6 +243,8 @@ struct OpenPbrMaterial {
     float coat_roughness_anisotropy = 0;
     float coat_ior = 1.6f;  ///< at least 1
     float coat_darkening = 1;
+    /// Turns the normal of the coat, which has that of the surface otherwise: a Relief turns all other layers.
+    std::optional<NormalMap> geometry_coat_normal = std::nullopt;
     float thin_film_weight = 0;
     float thin_film_thickness = 0.5f;  ///< micrometres, 0 … 10
     float thin_film_ior = 1.4f;        ///< 1 … 3
@@ -248,15 +274,6 @@ using Material = std::variant<DiffuseMaterial, RefractionMaterial, GlassMaterial
                               ThinGlassMaterial, DiffuseTransmissionMaterial, OpenPbrMaterial, MixMaterial>;
 
 // --- Relief ----------------------------------------------------------------------------------------------------
-
-/// Normals in tangent space: with (r, g, b) of the texture, 2 r - 1 is along u, 2 g - 1 along -v (up in the image, as
-/// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length. Where a mesh has tangents, they stand
-/// for u and -v.
-struct NormalMap {
-    TextureId texture{};  ///< linear
-    float strength = 1;   ///< multiplies the first two, -100 … 100
-    bool flip_y = false;  ///< 2 g - 1 is along v instead
-};
 
 /// Heights, of which the surface gets the slopes.
 struct BumpMap {

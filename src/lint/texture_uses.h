@@ -13,6 +13,7 @@ enum class Role : uint8_t {
     number,    ///< a weight, a roughness, an opacity: the first channel in [0, 1]
     normal,
     height,
+    direction,  ///< of a grain
 };
 
 /// Calls `visit(texture, role, what)` for each texture that a material names itself, `what` in the words of our own
@@ -45,6 +46,9 @@ void each_texture(const Material& material, const Visit& visit) {
         number(m->subsurface_weight, "subsurface_weight"), color(m->subsurface_color, "subsurface_color");
         number(m->fuzz_weight, "fuzz_weight"), color(m->fuzz_color, "fuzz_color");
         number(m->fuzz_roughness, "fuzz_roughness"), number(m->coat_roughness, "coat_roughness");
+        number(m->specular_roughness_anisotropy, "specular_roughness_anisotropy");
+        if (m->geometry_tangent.texture) visit(*m->geometry_tangent.texture, Role::direction, "geometry_tangent");
+        if (m->geometry_coat_normal) visit(m->geometry_coat_normal->texture, Role::normal, "geometry_coat_normal");
         color(m->coat_color, "coat_color"), color(m->emission_color, "emission_color", Role::emission);
         number(m->geometry_opacity, "geometry_opacity");
     }

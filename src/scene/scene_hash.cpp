@@ -108,17 +108,19 @@ private:
     void put(const DiffuseTransmissionMaterial& m) { put(m.reflectance, m.transmittance); }
     void put(const FloatInput& i) { put(i.value, i.texture); }
     void put(const ColorInput& i) { put(i.value, i.texture); }
+    void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const OpenPbrMaterial& m) {
         put(m.base_weight, m.base_color, m.base_metalness, m.base_diffuse_roughness);
-        put(m.specular_weight, m.specular_color, m.specular_roughness, m.specular_ior, m.specular_roughness_anisotropy);
+        put(m.specular_weight, m.specular_color, m.specular_roughness, m.specular_ior, m.specular_roughness_anisotropy,
+            m.specular_grain_shape, m.geometry_tangent.rotation, m.geometry_tangent.texture);
         put(m.transmission_weight, m.transmission_color, m.subsurface_weight, m.subsurface_color,
             m.subsurface_scatter_anisotropy);
         put(m.fuzz_weight, m.fuzz_color, m.fuzz_roughness);
         put(m.coat_weight, m.coat_color, m.coat_roughness, m.coat_roughness_anisotropy, m.coat_ior, m.coat_darkening);
+        put(m.geometry_coat_normal.has_value(), m.geometry_coat_normal.value_or(NormalMap{}));
         put(m.thin_film_weight, m.thin_film_thickness, m.thin_film_ior, m.emission_luminance, m.emission_color);
         put(m.geometry_opacity, m.geometry_opacity_cutoff, m.geometry_thin_walled);
     }
-    void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const BumpMap& m) { put(m.texture, m.scale); }
     void put(const Relief& r) { put(r.material, r.map); }
     void put(const MixMaterial& m) { put(m.first, m.second, m.weight); }

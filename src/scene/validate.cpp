@@ -167,9 +167,13 @@ private:
         unit(m.geometry_opacity, "geometry_opacity must be between 0 and 1");
         unit(m.geometry_opacity_cutoff, "geometry_opacity_cutoff must be between 0 and 1");
         const char* roughness = "roughnesses and anisotropies must be between 0 and 1";
-        for (const FloatInput* r : {&m.specular_roughness, &m.fuzz_roughness, &m.coat_roughness}) unit(*r, roughness);
-        for (const float r : {m.base_diffuse_roughness, m.specular_roughness_anisotropy, m.coat_roughness_anisotropy})
-            unit(r, roughness);
+        for (const FloatInput* r :
+             {&m.specular_roughness, &m.specular_roughness_anisotropy, &m.fuzz_roughness, &m.coat_roughness})
+            unit(*r, roughness);
+        for (const float r : {m.base_diffuse_roughness, m.coat_roughness_anisotropy}) unit(r, roughness);
+        require(std::fabs(m.geometry_tangent.rotation) <= 1e9f, "the rotation of a grain must be between -1e9 and 1e9");
+        if (m.geometry_tangent.texture) linear(*m.geometry_tangent.texture);
+        if (m.geometry_coat_normal) check(*m.geometry_coat_normal);
         const char* colors = "colours must be finite and not negative";
         for (const ColorInput* c : {&m.base_color, &m.specular_color, &m.transmission_color, &m.subsurface_color,
                                     &m.fuzz_color, &m.coat_color, &m.emission_color})
@@ -207,10 +211,10 @@ private:
     void linear(TextureId id) const {
         refers(id, s_.textures, "texture");
         require(!std::holds_alternative<ProductTexture>(s_.textures[index(id)]),
-                "normals and heights are not products of textures");
+                "normals, heights and directions are not products of textures");
         const auto* image = std::get_if<ImageTexture>(&s_.textures[index(id)]);
         require(!image || image->color_space == ColorSpace::linear,
-                "normals and heights are numbers, their texture must be linear");
+                "normals, heights and directions are numbers, their texture must be linear");
     }
     void check(const NormalMap& m) const {
         linear(m.texture);

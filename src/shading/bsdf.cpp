@@ -1,6 +1,7 @@
 #include "shading/bsdf.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "shading/bsdf/conductor.h"
 #include "shading/bsdf/diffuse.h"
@@ -9,7 +10,7 @@
 #include "shading/bsdf/glass.h"
 #include "shading/bsdf/mirror.h"
 #include "shading/bsdf/mix.h"
-#include "shading/bsdf/open_pbr.h"
+#include "shading/bsdf/open_pbr_coat.h"
 #include "shading/bsdf/phase.h"
 #include "shading/bsdf/refraction.h"
 #include "shading/bsdf/rough_glass.h"
@@ -24,6 +25,34 @@ namespace {
 
 // A kind of material or lobe without its functions is a compile error in the visits below.
 
+Frame frame_about(Vec3 n, const Microfacets& facets, Vec3 along) {
+    return facets.alpha_x == facets.alpha_y ? Frame::from_z(n) : Frame::from_zx(n, along);
+}
+
+/// Turns the frames of base and coat by their grain. The coat gets one of its own where that of the base would not do:
+/// it has its own normal, which without a map is that of the surface.
+template <class Out>
+void place_layers(const LobeContext& context, const OpenPbrMaterial& m, MaterialId id, OpenPbrBsdf& lobe, Out& out) {
+    const ShadingScene& scene = context.scene;
+    const SurfacePoint& point = context.point;
+    const Microfacets& base = lobe.metal.facets;
+    const Vec3 n = out.frame.z;
+    const bool coat_has_grain = lobe.coat.alpha_x != lobe.coat.alpha_y;
+    const bool turned = m.geometry_tangent.rotation != 0 || m.geometry_tangent.texture;
+    ReliefNormal coat{point.ns, false};
+    if (lobe.tables->coat && m.geometry_coat_normal) coat = relief_normal(scene, point, {id, *m.geometry_coat_normal});
+    lobe.coat_apart = lobe.tables->coat && (coat.n != n || (coat_has_grain && turned));
+    const Vec3 along = lobe_has_direction(lobe) ? grain_at(scene, point, m.geometry_tangent) : Vec3{};
+    if (!lobe.coat_apart) {
+        if (lobe_has_direction(lobe)) out.frame = Frame::from_zx(n, along);
+        return;
+    }
+    out.frame = frame_about(n, base, along);
+    lobe.coat_frame = frame_about(coat.n, lobe.coat, tangent_at(scene, point));
+    lobe.coat_folded = coat.turned;
+    lobe.base_folded = std::exchange(out.folded, false);
+}
+
 /// The lobe of one material that is no mix, about the normal that its relief gives it. `out` is a Bsdf or a part of
 /// one.
 template <class Out>
@@ -37,7 +66,10 @@ void make_plain(const ShadingScene& scene, const SurfacePoint& point, MaterialId
     }
     out.frame = Frame::from_z(n);
     const auto set = [&](auto&& lobe) {
-        if (lobe_has_direction(lobe)) out.frame = Frame::from_zx(n, tangent_at(scene, point));
+        if constexpr (std::is_same_v<std::decay_t<decltype(lobe)>, OpenPbrBsdf>)
+            place_layers(context, std::get<OpenPbrMaterial>(scene.scene.materials[index(id)]), id, lobe, out);
+        else if (lobe_has_direction(lobe))
+            out.frame = Frame::from_zx(n, tangent_at(scene, point));
         out.lobe = std::move(lobe);
     };
     const auto make = [&](const auto& material) {

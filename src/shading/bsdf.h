@@ -76,6 +76,11 @@ struct OpenPbrBsdf {
     float passed_share = 0;  ///< of what the subsurface of a thin wall scatters
     bool thin_walled = false;
     Microfacets coat;
+    /// The coat has a frame of its own. Then the lobe itself says which of the two normals come from maps, and Bsdf or
+    /// Part not.
+    bool coat_apart = false;
+    bool base_folded = false, coat_folded = false;
+    Frame coat_frame{};
     const OpenPbrTables* tables = nullptr;
 };
 

@@ -10,7 +10,10 @@ namespace steradian {
 namespace {
 
 constexpr int kIndices = 4, kLevels = 16, kAzimuths = 9, kPolar = 32;
-constexpr int kPsiNodes = 12;  // for each quarter turn
+/// Of tables over every grain, which are many.
+constexpr int kGrains = 4, kGrainLevels = 8, kGrainAzimuths = 5, kGrainPolar = 20;
+constexpr float kLongestGrain = 1e-3f;  ///< α across over α along, of the first
+constexpr int kPsiNodes = 12;           // for each quarter turn
 constexpr int kSlopeNodes = 64;
 
 /// Nodes and weights of Gauss and Legendre on [0, 1], the roots found by Newton's method.
@@ -151,38 +154,45 @@ Microfacets microfacets(const Roughness& roughness, float texture) noexcept {
     return clamped(alphas(roughness, scale), roughness.squared ? scale : std::sqrt(scale));
 }
 
-MicrofacetEnergy::MicrofacetEnergy(const Roughness& roughness, int sides, int indices)
+MicrofacetEnergy::MicrofacetEnergy(const TabulatedRoughness& roughness, int sides, int indices)
     : indices_(indices),
       sides_(sides),
       levels_(roughness.texture ? kLevels : 1),
-      azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths) {}
+      azimuths_(roughness.value.x == roughness.value.y ? 1 : kAzimuths),
+      polar_(kPolar) {
+    if (roughness.grains) levels_ = kGrainLevels, grains_ = kGrains, azimuths_ = kGrainAzimuths, polar_ = kGrainPolar;
+}
 
-Microfacets MicrofacetEnergy::at_level(const Roughness& roughness, int level) const {
+Microfacets MicrofacetEnergy::at_row(const TabulatedRoughness& roughness, int row) const {
     if (levels_ == 1) return microfacets(roughness, 1);
-    const float t = static_cast<float>(level) / static_cast<float>(levels_ - 1);
+    const float t = static_cast<float>(row / grains_) / static_cast<float>(levels_ - 1);
     // Instead of the perfectly smooth surface at level 0 one that is almost so: the limit of rough ones.
     const float scale = max_of(t, 0.01f);
-    return clamped(alphas(roughness, roughness.squared ? scale : scale * scale), t);
+    Microfacets out = clamped(alphas(roughness, roughness.squared ? scale : scale * scale), t);
+    if (grains_ == 1) return out;
+    out.across = static_cast<float>(row % grains_) / static_cast<float>(grains_ - 1);
+    out.alpha_y = max_of(out.alpha_y * max_of(out.across, kLongestGrain), kMinAlpha);
+    return out;
 }
 
 Vec2 MicrofacetEnergy::stretch(const Microfacets& m, Side side) const {
-    return side == dense_side_ ? Vec2{1, 1} : Vec2{m.alpha_x, m.alpha_y};
+    return side == as_they_are_ ? Vec2{1, 1} : Vec2{m.alpha_x, m.alpha_y};
 }
 
 template <class Albedo>
-void MicrofacetEnergy::fill(const Roughness& roughness, Side side, const Albedo& albedo) {
+void MicrofacetEnergy::fill(const TabulatedRoughness& roughness, Side side, const Albedo& albedo) {
     fill_losses(roughness, side, albedo);
     fill_means(roughness, side, 0);
 }
 
 template <class Albedo>
-void MicrofacetEnergy::fill_losses(const Roughness& roughness, Side side, const Albedo& albedo) {
-    loss_.reserve(size_t(indices_) * size_t(sides_) * size_t(levels_) * size_t(azimuths_) * kPolar);
-    for (int level = 0; level < levels_; ++level) {
-        const Microfacets m = at_level(roughness, level);
+void MicrofacetEnergy::fill_losses(const TabulatedRoughness& roughness, Side side, const Albedo& albedo) {
+    loss_.reserve(size_t(indices_) * size_t(sides_) * size_t(rows()) * size_t(azimuths_) * size_t(polar_));
+    for (int row = 0; row < rows(); ++row) {
+        const Microfacets m = at_row(roughness, row);
         for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
-            for (int polar = 0; polar < kPolar; ++polar) {
-                const double c = cosine_from_polar(static_cast<double>(polar) / (kPolar - 1));
+            for (int polar = 0; polar < polar_; ++polar) {
+                const double c = cosine_from_polar(static_cast<double>(polar) / (polar_ - 1));
                 const double a = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
                 const double q = cosine_from_polar(a);
                 const Vec3d o = unstretched(stretch(m, side), max_of(c, 1e-6), q);
@@ -193,9 +203,9 @@ void MicrofacetEnergy::fill_losses(const Roughness& roughness, Side side, const 
 }
 
 /// The mean of what the table says, so that what is added to it makes it whole.
-void MicrofacetEnergy::fill_means(const Roughness& roughness, Side side, float index) {
-    for (int level = 0; level < levels_; ++level) {
-        const Microfacets m = at_level(roughness, level);
+void MicrofacetEnergy::fill_means(const TabulatedRoughness& roughness, Side side, float index) {
+    for (int row = 0; row < rows(); ++row) {
+        const Microfacets m = at_row(roughness, row);
         constexpr int kSteps = 256;
         const int turns = azimuths_ == 1 ? 1 : 64;
         double sum = 0;
@@ -210,31 +220,34 @@ void MicrofacetEnergy::fill_means(const Roughness& roughness, Side side, float i
     }
 }
 
-std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Roughness& roughness) {
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const TabulatedRoughness& roughness) {
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
     out->fill(roughness, Side::outside, reflecting_albedo);
     return out;
 }
 
-std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughness& roughness, double eta) {
-    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
-    const auto fresnel = [&](double cosine) { return fresnel_dielectric(cosine, eta); };
-    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, fresnel); });
-    return out;
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const TabulatedRoughness& roughness, double eta) {
+    return coating(roughness, [&](double cosine) { return fresnel_dielectric(cosine, eta); });
 }
 
-std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const Roughness& roughness,
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const TabulatedRoughness& roughness,
                                                                   const std::function<double(double)>& reflectance) {
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
+    // What refracts is most of the loss and depends on the direction itself. Almost all directions are at one place of
+    // a space that is stretched for a polished surface, and different ones where the roughness varies.
+    constexpr float kPolished = 0.05f;
+    const Microfacets m = microfacets(roughness, 1);
+    if (roughness.texture || max_of(m.alpha_x, m.alpha_y) < kPolished) out->as_they_are_ = Side::outside;
     out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, reflectance); });
     return out;
 }
 
-std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Roughness& roughness, IndexRange eta) {
+std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const TabulatedRoughness& roughness,
+                                                                       IndexRange eta) {
     const int indices = eta.first == eta.last ? 1 : kIndices;
     const auto at = [&](int i) { return indices == 1 ? 0 : static_cast<double>(i) / (indices - 1); };
     const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 2, indices));
-    out->dense_side_ = eta.first > 1 ? Side::inside : Side::outside;
+    out->as_they_are_ = eta.first > 1 ? Side::inside : Side::outside;
     for (int i = 0; i < indices; ++i)
         for (const Side side : {Side::outside, Side::inside}) {
             const double n = eta.first + (eta.last - eta.first) * at(i);
@@ -254,28 +267,32 @@ double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side, float in
     const double x = scale.x * w.x, y = scale.y * w.y, z = w.z;
     const double across = x * x + y * y;
     const double q = across > 0 ? y * y / across : 0;
-    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_), a(polar_from_cosine(q), azimuths_),
-        p(polar_from_cosine(z / std::sqrt(across + z * z)), kPolar);
+    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_), g(m.across, grains_),
+        a(polar_from_cosine(q), azimuths_), p(polar_from_cosine(z / std::sqrt(across + z * z)), polar_);
     double sum = 0;
     for (int n = 0; n < e.count; ++n)
         for (int i = 0; i < l.count; ++i)
-            for (int j = 0; j < a.count; ++j) {
-                const int at = ((e.first + n) * sides_ + int(side)) * levels_ + l.first + i;
-                const float* row = loss_.data() + (at * azimuths_ + a.first + j) * kPolar + p.first;
-                double inner = 0;
-                for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
-                sum += e.w[size_t(n)] * l.w[size_t(i)] * a.w[size_t(j)] * inner;
-            }
+            for (int h = 0; h < g.count; ++h)
+                for (int j = 0; j < a.count; ++j) {
+                    const int level = ((e.first + n) * sides_ + int(side)) * levels_ + l.first + i;
+                    const int at = level * grains_ + g.first + h;
+                    const float* row = loss_.data() + (at * azimuths_ + a.first + j) * polar_ + p.first;
+                    double inner = 0;
+                    for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
+                    sum += e.w[size_t(n)] * l.w[size_t(i)] * g.w[size_t(h)] * a.w[size_t(j)] * inner;
+                }
     return clamp_to(sum, 0.0, 1.0);
 }
 
 double MicrofacetEnergy::mean_loss(const Microfacets& m, Side side, float index) const noexcept {
-    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_);
+    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_), g(m.across, grains_);
     double sum = 0;
     for (int n = 0; n < e.count; ++n)
         for (int i = 0; i < l.count; ++i)
-            sum += e.w[size_t(n)] * l.w[size_t(i)] *
-                   mean_[size_t(((e.first + n) * sides_ + int(side)) * levels_ + l.first + i)];
+            for (int h = 0; h < g.count; ++h) {
+                const int level = ((e.first + n) * sides_ + int(side)) * levels_ + l.first + i;
+                sum += e.w[size_t(n)] * l.w[size_t(i)] * g.w[size_t(h)] * mean_[size_t(level * grains_ + g.first + h)];
+            }
     return clamp_to(sum, 0.0, 1.0);
 }
 

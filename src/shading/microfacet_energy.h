@@ -22,6 +22,8 @@ inline constexpr float kMinAlpha = 1e-4f;
 struct Microfacets {
     float alpha_x = 0, alpha_y = 0;
     float level = 1;  ///< in [0, 1]: the square root of α over the material's own, which the texture multiplies
+    /// Where tables are over the grain as well: α across over α along, at most 1; `level` is then the root of α along.
+    float across = 1;
 
     bool smooth() const { return alpha_x == 0 && alpha_y == 0; }
     Ggx ggx() const { return {alpha_x, alpha_y}; }
@@ -41,18 +43,29 @@ struct IndexRange {
 
 enum class Side : uint8_t { outside, inside };  ///< of a dielectric; metals have the first only
 
+/// What roughnesses tables are made for: one, all that a texture makes of it, or any along and across.
+struct TabulatedRoughness : Roughness {
+    TabulatedRoughness(const Roughness& of) : Roughness(of) {}
+    static TabulatedRoughness every_grain() {
+        TabulatedRoughness out{Roughness{{1, 1}, true, TextureId{}}};
+        out.grains = true;
+        return out;
+    }
+    bool grains = false;
+};
+
 /// For one material: over the direction, and where the roughness is a texture, over its values.
 class MicrofacetEnergy {
 public:
     /// Facets that reflect everything.
-    static std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& roughness);
+    static std::shared_ptr<const MicrofacetEnergy> reflecting(const TabulatedRoughness& roughness);
     /// Facets of a dielectric that reflect; what refracts is lost. eta: far over near side, > 1.
-    static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness, double eta);
+    static std::shared_ptr<const MicrofacetEnergy> coating(const TabulatedRoughness& roughness, double eta);
     /// The same by any reflectance, of the cosine to the facet.
-    static std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& roughness,
+    static std::shared_ptr<const MicrofacetEnergy> coating(const TabulatedRoughness& roughness,
                                                            const std::function<double(double)>& reflectance);
     /// Facets of a dielectric that reflect and refract.
-    static std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& roughness, IndexRange eta);
+    static std::shared_ptr<const MicrofacetEnergy> transmitting(const TabulatedRoughness& roughness, IndexRange eta);
 
     /// The part of the light from w (unit, w.z >= 0) that does not leave after one bounce. Within about 1e-4, of
     /// dielectrics from the dense side 4e-3; with a grain of 1 to 16 within 1e-2, and 3e-2 less than 3 degrees above
@@ -62,24 +75,26 @@ public:
     double mean_loss(const Microfacets& m, Side side = Side::outside, float index = 0) const noexcept;
 
 private:
-    MicrofacetEnergy(const Roughness& roughness, int sides, int indices = 1);
+    MicrofacetEnergy(const TabulatedRoughness& roughness, int sides, int indices = 1);
     template <class Albedo>
-    void fill(const Roughness& roughness, Side side, const Albedo& albedo);
+    void fill(const TabulatedRoughness& roughness, Side side, const Albedo& albedo);
     template <class Albedo>
-    void fill_losses(const Roughness& roughness, Side side, const Albedo& albedo);
-    void fill_means(const Roughness& roughness, Side side, float index);
+    void fill_losses(const TabulatedRoughness& roughness, Side side, const Albedo& albedo);
+    void fill_means(const TabulatedRoughness& roughness, Side side, float index);
     /// Of the space that the table of a side is over: along x and y.
     Vec2 stretch(const Microfacets& m, Side side) const;
-    Microfacets at_level(const Roughness& roughness, int level) const;
+    /// Row of the axes level and grain together.
+    Microfacets at_row(const TabulatedRoughness& roughness, int row) const;
+    int rows() const { return levels_ * grains_; }
 
-    // Axes: index, side, level, azimuth, polar angle. An axis with a single entry is constant.
-    int indices_ = 1, sides_ = 1, levels_ = 1, azimuths_ = 1;
-    /// Of a dielectric: total reflection begins at one angle there, whatever the roughness, so that this side is
-    /// tabulated over directions as they are. Other sides are in the space in which the roughness is 1 (ggx.h), where
-    /// the loss changes at the same place whatever the roughness.
-    std::optional<Side> dense_side_;
-    std::vector<float> loss_;  ///< [index][side][level][azimuth][polar]
-    std::vector<float> mean_;  ///< [index][side][level]
+    // Axes: index, side, level, grain, azimuth, polar angle. An axis with a single entry is constant.
+    int indices_ = 1, sides_ = 1, levels_ = 1, grains_ = 1, azimuths_ = 1, polar_ = 32;
+    /// The side that is tabulated over directions as they are: of a dielectric where total reflection begins at one
+    /// angle, whatever the roughness. Other sides are in the space in which the roughness is 1 (ggx.h), where the loss
+    /// changes at the same place whatever the roughness.
+    std::optional<Side> as_they_are_;
+    std::vector<float> loss_;  ///< [index][side][level][grain][azimuth][polar]
+    std::vector<float> mean_;  ///< [index][side][level][grain]
 };
 
 /// How the light that bounces between facets is sampled: uniform in azimuth, and in the cosine μ like μ / (μ² + α²),

@@ -111,8 +111,12 @@ double FuzzTable::albedo(float roughness, double mu) const noexcept {
     return at.fraction > 0 ? first * (1 - at.fraction) + of(levels_[at.first + 1]) * at.fraction : first;
 }
 
-Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept {
+Vec2 open_pbr_alpha(float roughness, float anisotropy, GrainShape shape) noexcept {
     const double across = 1 - static_cast<double>(anisotropy), r2 = static_cast<double>(roughness) * roughness;
+    if (shape == GrainShape::gltf) {
+        const double a2 = static_cast<double>(anisotropy) * anisotropy;
+        return {static_cast<float>(r2 + (1 - r2) * a2), static_cast<float>(r2)};
+    }
     const double along = r2 * std::sqrt(2 / (1 + across * across));
     return {static_cast<float>(along), static_cast<float>(across * along)};
 }
@@ -125,9 +129,9 @@ float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness, flo
     return static_cast<float>(r + (rougher - r) * m.coat_weight);
 }
 
-std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const Roughness& r, double eta,
+std::shared_ptr<const MicrofacetEnergy> SharedTables::energy(Kind kind, const TabulatedRoughness& r, double eta,
                                                              double last_eta) {
-    auto& known = energy_[Key{kind, r.value.x, r.value.y, r.squared, r.texture.has_value(), eta, last_eta}];
+    auto& known = energy_[Key{kind, r.value.x, r.value.y, r.squared, r.texture.has_value(), r.grains, eta, last_eta}];
     if (known) return known;
     switch (kind) {
         case Kind::reflecting:
@@ -154,7 +158,8 @@ FilmTables SharedTables::film(const Film& of) {
                       of.base.value.x,
                       of.base.value.y,
                       of.base.squared,
-                      of.base.texture.has_value()};
+                      of.base.texture.has_value(),
+                      of.base.grains};
     const auto known = films_.find(key);
     if (known != films_.end()) return known->second;
     FilmTables out;
@@ -177,7 +182,8 @@ FilmTables SharedTables::film(const Film& of) {
 
 namespace {
 
-SharedTables::Film film_of(const OpenPbrMaterial& m, const Roughness& base, double below, const OpenPbrTables& tables) {
+SharedTables::Film film_of(const OpenPbrMaterial& m, const TabulatedRoughness& base, double below,
+                           const OpenPbrTables& tables) {
     SharedTables::Film out;
     out.above = 1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight;
     out.film = m.thin_film_ior, out.thickness = m.thin_film_thickness, out.weight = m.thin_film_weight;
@@ -204,7 +210,14 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
     out.textured = m.specular_roughness.texture || out.coat_textured;
     const float roughness =
         out.textured ? 1 : open_pbr_roughness(m, m.specular_roughness.value, m.coat_roughness.value);
-    const Roughness base = table_roughness(open_pbr_alpha(roughness, m.specular_roughness_anisotropy), out.textured);
+    const FloatInput& grain = m.specular_roughness_anisotropy;
+    // glTF's shape has not the same ratio of the two at all roughnesses.
+    const bool shapes_differ = m.specular_grain_shape == GrainShape::gltf && grain.value > 0 && out.textured;
+    out.every_grain = grain.texture || shapes_differ;
+    const TabulatedRoughness base =
+        out.every_grain ? TabulatedRoughness::every_grain()
+                        : TabulatedRoughness(table_roughness(
+                              open_pbr_alpha(roughness, grain.value, m.specular_grain_shape), out.textured));
     out.base = base;
     out.coat_eta = m.coat_ior;
     // Under a coat the index is relative to the coat's. Seen from outside it reflects like its inverse: what would be

@@ -52,8 +52,9 @@ struct FilmTables {
 
 struct OpenPbrTables {
     bool textured = false;                     ///< the tables of the base are over its roughness as well
+    bool every_grain = false;                  ///< and over its grain
     bool coat_textured = false;                ///< likewise
-    Roughness base;                            ///< as far as the tables go
+    TabulatedRoughness base{Roughness{}};      ///< as far as the tables go
     float eta = 1.5f;                          ///< of the base as a body: inside over outside
     GlassIndex glass_index;                    ///< the same by the wavelength
     double eta_outside = 1.5, coat_eta = 1.6;  ///< of reflections from outside
@@ -65,18 +66,20 @@ struct OpenPbrTables {
 };
 
 /// α along u and across: section "Microfacet model" of the specification.
-Vec2 open_pbr_alpha(float roughness, float anisotropy) noexcept;
+Vec2 open_pbr_alpha(float roughness, float anisotropy, GrainShape shape = GrainShape::open_pbr) noexcept;
 /// Of the base as roughened by the coat, where the two are as rough as that.
 float open_pbr_roughness(const OpenPbrMaterial& m, float specular_roughness, float coat_roughness) noexcept;
 
 /// Tables by what they are made of, so that materials which have it in common share them.
 class SharedTables {
 public:
-    std::shared_ptr<const MicrofacetEnergy> reflecting(const Roughness& r) { return energy(Kind::reflecting, r, 0); }
-    std::shared_ptr<const MicrofacetEnergy> coating(const Roughness& r, double eta) {
+    std::shared_ptr<const MicrofacetEnergy> reflecting(const TabulatedRoughness& r) {
+        return energy(Kind::reflecting, r, 0);
+    }
+    std::shared_ptr<const MicrofacetEnergy> coating(const TabulatedRoughness& r, double eta) {
         return energy(Kind::coating, r, eta);
     }
-    std::shared_ptr<const MicrofacetEnergy> transmitting(const Roughness& r, IndexRange eta) {
+    std::shared_ptr<const MicrofacetEnergy> transmitting(const TabulatedRoughness& r, IndexRange eta) {
         return energy(Kind::transmitting, r, eta.first, eta.last);
     }
     std::shared_ptr<const FuzzTable> fuzz(const FloatInput& roughness);
@@ -87,19 +90,20 @@ public:
         double below = 1, eta = 1, eta_outside = 1;             ///< the base under the film, and without one
         bool metal = false, glass = false, opaque = false;      ///< the parts that there are
         float tint[3] = {};                                     ///< of the metal towards grazing angles
-        Roughness base;
+        TabulatedRoughness base{Roughness{}};
     };
     FilmTables film(const Film& of);
 
 private:
     enum class Kind : uint8_t { reflecting, coating, transmitting };
-    std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const Roughness& r, double eta, double last_eta = 0);
+    std::shared_ptr<const MicrofacetEnergy> energy(Kind kind, const TabulatedRoughness& r, double eta,
+                                                   double last_eta = 0);
 
-    using Key = std::tuple<Kind, float, float, bool, bool, double, double>;
+    using Key = std::tuple<Kind, float, float, bool, bool, bool, double, double>;
     std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
     std::map<std::pair<float, bool>, std::shared_ptr<const FuzzTable>> fuzz_;
     using FilmKey =
-        std::tuple<std::array<double, 7>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool>;
+        std::tuple<std::array<double, 7>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool, bool>;
     std::map<FilmKey, FilmTables> films_;
 };
 

@@ -1,5 +1,6 @@
 #include "shading/relief.h"
 
+#include "math/elementary.h"
 #include "shading/texture.h"
 
 namespace steradian {
@@ -8,12 +9,20 @@ namespace {
 /// The part of v that is perpendicular to n, of unit length; zero where there is none.
 Vec3d along_surface(Vec3d v, Vec3d n) { return normalize(v - n * dot(v, n)); }
 
+/// u, and what is perpendicular to it; texture coordinates may be mirrored on the surface: -v is on either side of u.
+struct TangentAxes {
+    Vec3d x, up;
+    bool mirrored = false;  ///< -v is on the side of -up
+    TangentAxes(const SurfaceDerivatives& d, Vec3d n) {
+        const double sign = d.determinant > 0 ? 1 : -1;
+        x = along_surface(d.du * sign, n);
+        up = cross(n, x);
+        mirrored = dot(up, d.dv * sign) > 0;
+    }
+};
+
 Vec3d by_map(const NormalMap& map, Rgb texel, const SurfaceDerivatives& d, Vec3d n) {
-    const double sign = d.determinant > 0 ? 1 : -1;
-    const Vec3d x = along_surface(d.du * sign, n);
-    const Vec3d up = cross(n, x);
-    // Texture coordinates may be mirrored on the surface: -v is on either side of u.
-    const bool mirrored = dot(up, d.dv * sign) > 0;
+    const auto [x, up, mirrored] = TangentAxes(d, n);
     const double strength = map.strength, r = (2.0 * texel.r - 1) * strength, g = (2.0 * texel.g - 1) * strength;
     return x * r + up * (mirrored != map.flip_y ? -g : g) + n * (2.0 * texel.b - 1);
 }
@@ -69,6 +78,24 @@ ReliefNormal relief_normal(const ShadingScene& scene, const SurfacePoint& point,
     const double size = length(n);
     if (!(size > 0) || !std::isfinite(size) || d.determinant == 0) return flat;
     return {static_cast<Vec3>(visible_normal(n * (1 / size), point.ng, point.wo)), true};
+}
+
+Vec3 grain_at(const ShadingScene& scene, const SurfacePoint& point, const GrainDirection& grain) noexcept {
+    if (grain.rotation == 0 && !grain.texture) return tangent_at(scene, point);
+    double x = 1, y = 0;
+    uint32_t uv_set = 0;
+    if (grain.texture) {
+        const Rgb texel = eval_texture(scene, *grain.texture, point);
+        uv_set = uv_set_of(scene.scene, *grain.texture);
+        x = 2.0 * texel.r - 1, y = 2.0 * texel.g - 1;
+        if (!(x * x + y * y > 0)) x = 1, y = 0;
+    }
+    const double angle = grain.rotation * (std::numbers::pi / 180), c = math::cos(angle), s = math::sin(angle);
+    const SurfaceDerivatives d = tangents_at(scene, point, uv_set);
+    if (d.determinant == 0) return {};
+    const TangentAxes axes(d, point.ns);
+    const double across = (s * x + c * y) * (axes.mirrored ? -1 : 1);
+    return static_cast<Vec3>(normalize(axes.x * (c * x - s * y) + axes.up * across));
 }
 
 }  // namespace steradian

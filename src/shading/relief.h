@@ -23,4 +23,7 @@ struct ReliefNormal {
 /// Seen from point.wo, where that is given.
 ReliefNormal relief_normal(const ShadingScene& scene, const SurfacePoint& point, const Relief& relief) noexcept;
 
+/// The direction of a grain on the surface, in world space; as tangent_at() where it is not turned.
+Vec3 grain_at(const ShadingScene& scene, const SurfacePoint& point, const GrainDirection& grain) noexcept;
+
 }  // namespace steradian

@@ -248,7 +248,7 @@ TEST(NativeScene, OpenPbr) {
                              m.specular_color.value.g,
                              m.specular_roughness.value,
                              m.specular_ior - 1,
-                             m.specular_roughness_anisotropy,
+                             m.specular_roughness_anisotropy.value,
                              m.transmission_weight.value,
                              m.transmission_color.value.b,
                              m.subsurface_weight.value,
@@ -280,6 +280,29 @@ TEST(NativeScene, OpenPbr) {
     for (const FloatInput& in : {textured.coat_roughness, textured.fuzz_roughness}) EXPECT_EQ(in.texture, TextureId{0});
     EXPECT_EQ(textured.specular_roughness.value, 1);
     EXPECT_EQ(textured.specular_roughness.texture, TextureId{0});
+}
+
+TEST(NativeScene, FramesOfOpenPbrLayers) {
+    const LoadedScene loaded = load_good(
+        scene_with(R"("textures": {"t": {"type": "constant", "color": 0.1}, "n": {"type": "constant", "color": 0.5}},
+        "materials": {
+        "plain": {"type": "open_pbr"},
+        "short": {"type": "open_pbr", "geometry_coat_normal": "n", "geometry_tangent": "n",
+                  "specular_roughness_anisotropy": "t"},
+        "long": {"type": "open_pbr", "geometry_coat_normal": {"texture": "n", "strength": 0.5, "flip_y": true},
+                 "geometry_tangent_rotation": -30}})"));
+    const auto get = [&](size_t i) { return std::get<OpenPbrMaterial>(loaded.scene.materials[i]); };
+    EXPECT_FALSE(get(0).geometry_coat_normal);
+    EXPECT_FALSE(get(0).geometry_tangent.texture);
+    EXPECT_EQ(get(1).geometry_coat_normal->texture, TextureId{1});
+    EXPECT_EQ(get(1).geometry_coat_normal->strength, 1);
+    EXPECT_EQ(get(1).geometry_tangent.texture, TextureId{1});
+    EXPECT_EQ(get(1).geometry_tangent.rotation, 0);
+    EXPECT_EQ(get(1).specular_roughness_anisotropy.texture, TextureId{0});
+    EXPECT_EQ(get(2).geometry_coat_normal->strength, 0.5f);
+    EXPECT_TRUE(get(2).geometry_coat_normal->flip_y);
+    EXPECT_EQ(get(2).geometry_tangent.rotation, -30);
+    EXPECT_EQ(get(2).specular_grain_shape, GrainShape::open_pbr);
 }
 
 TEST(NativeScene, RoughAndThinGlass) {

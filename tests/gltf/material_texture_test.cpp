@@ -126,5 +126,69 @@ TEST(GltfExtensionTextures, TwoWeightsAtMost) {
         EXPECT_TRUE(std::holds_alternative<OpenPbrMaterial>(loaded.scene.materials[index(r.material)]));
 }
 
+/// Fresnel's reflectance at this cosine, of an index of 1.5.
+double fresnel(double mu) {
+    const double n = 1.5, inside = std::sqrt(1 - (1 - mu * mu) / (n * n));
+    const double s = (mu - n * inside) / (mu + n * inside), p = (n * mu - inside) / (n * mu + inside);
+    return (s * s + p * p) / 2;
+}
+
+/// A polished coat on black, seen at a right angle below a white sky: it reflects by the angle of its own normal, which
+/// without a map is that of the surface, whatever the base's map says.
+TEST(GltfExtensionTextures, NormalsOfTheCoat) {
+    const std::string black =
+        "\"pbrMetallicRoughness\": {\"baseColorFactor\": [0, 0, 0, 1], \"roughnessFactor\": 0}, \"extensions\": "
+        "{\"KHR_materials_clearcoat\": {\"clearcoatFactor\": 1";
+    const std::string mapped = ", \"clearcoatNormalTexture\": {\"index\": 0}",
+                      base = ", \"normalTexture\": {\"index\": 0}";
+    const std::vector<int> tilted{247, 128, 171, 255};
+    const double x = 247 / 127.5 - 1, y = 128 / 127.5 - 1, z = 171 / 127.5 - 1;
+    const double mu = z / std::sqrt(x * x + y * y + z * z);
+    const auto seen = [&](const std::string& material) {
+        return under_a_white_sky(wall(material, texture_of(tilted)).scene, 0, kWidth);
+    };
+    const auto expect = [](const Mean& mean, double value) {
+        EXPECT_LT(mean.error, 1e-3);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean.color[c], value, 5 * mean.error + 1e-3);
+    };
+    expect(seen(black + mapped + "}}"), fresnel(mu));
+    EXPECT_GT(fresnel(mu), 0.16);
+    expect(seen(black + "}}"), 0.04);
+    // Black metal about a turned normal reflects by Schlick's formula, below what the flat coat lets pass.
+    const double below = std::pow(1 - mu, 5);
+    expect(seen(black + "}}" + base), 0.04 + 0.96 * below);
+}
+
+TEST(GltfExtensionTextures, DirectionsOfTheGrain) {
+    const auto material = [](const std::string& members) {
+        return "\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.3}, \"extensions\": {\"KHR_materials_anisotropy\": "
+               "{\"anisotropyStrength\": 0.6" +
+               members + "}}";
+    };
+    // Up in the image, with two thirds of the strength.
+    const std::string map = ", \"anisotropyTexture\": {\"index\": 0}";
+    const std::vector<int> up{128, 255, 170, 255};
+    const auto picture_of = [&](const std::string& text) {
+        Scene scene = wall(text, texture_of(up)).scene;
+        RenderSettings settings;
+        settings.width = kWidth, settings.height = kHeight, settings.samples_per_pixel = 256;
+        return run(prepared(std::move(scene)), settings).image.pixels;
+    };
+    const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
+        double sum = 0, all = 0;
+        for (size_t i = 0; i < a.size(); ++i) sum += std::fabs(double(a[i]) - double(b[i])), all += double(a[i]);
+        return sum / all;
+    };
+    std::string weaker = material(", \"anisotropyRotation\": 1.570796");
+    weaker.replace(weaker.find("0.6"), 3, "0.4");
+    const auto by_texture = picture_of(material(map)), by_factor = picture_of(weaker);
+    EXPECT_LT(difference(by_factor, by_texture), 0.04);
+    std::string straight = material("");
+    straight.replace(straight.find("0.6"), 3, "0.4");
+    EXPECT_GT(difference(by_factor, picture_of(straight)), 0.1);
+    // Both turns together are half a turn, which is none.
+    EXPECT_LT(difference(picture_of(straight), picture_of(material(map + ", \"anisotropyRotation\": 1.570796"))), 0.04);
+}
+
 }  // namespace
 }  // namespace steradian

@@ -34,7 +34,8 @@ TEST(GltfSpecularGlossiness, PartsMakeUpTheWhole) {
         ASSERT_LE(split.metalness, 1);
         EXPECT_NEAR(rest * (1 - least * double(split.dielectric)), 1 - most, 1e-6);
         for (int c = 0; c < 3; ++c) {
-            const double sum = double(split.metalness) * double(split.metal[c]) + rest * least * double(split.dielectric);
+            const double sum =
+                double(split.metalness) * double(split.metal[c]) + rest * least * double(split.dielectric);
             // What would have to be less than nothing is nothing: there the dielectric alone reflects more.
             EXPECT_NEAR(sum, std::max(double(s[c]), rest * least * double(split.dielectric)), 1e-6);
             ASSERT_LE(split.metal[c], 1);
@@ -44,32 +45,6 @@ TEST(GltfSpecularGlossiness, PartsMakeUpTheWhole) {
     EXPECT_FLOAT_EQ(gltf::split_reflectance({0.02f, 0.01f, 0.02f}).dielectric, 0.5f);
 }
 
-/// The mean of a polished wall, seen at a right angle, below a white sky; with the largest error of the mean.
-struct Mean {
-    Rgb color;
-    double error = 0;
-};
-Mean under_a_white_sky(Scene scene, uint32_t first_column, uint32_t last_column) {
-    scene.lights = {EnvironmentLight{}};
-    RenderSettings settings;
-    settings.width = kWidth, settings.height = kHeight;
-    settings.samples_per_pixel = 1024;
-    settings.filter = {FilterKind::box, 0.5f};
-    const Image image = run(prepared(std::move(scene)), settings).image;
-    double sum[3] = {}, squares[3] = {}, n = 0;
-    for (uint32_t y = 0; y < kHeight; ++y)
-        for (uint32_t x = first_column; x < last_column; ++x, ++n)
-            for (uint32_t c = 0; c < 3; ++c) {
-                const double v = double(image.pixels[(y * kWidth + x) * 3 + c]);
-                sum[c] += v, squares[c] += v * v;
-            }
-    Mean out;
-    for (int c = 0; c < 3; ++c) {
-        out.color[c] = static_cast<float>(sum[c] / n);
-        out.error = std::max(out.error, std::sqrt(std::max(squares[c] / n - sum[c] * sum[c] / (n * n), 0.0) / n));
-    }
-    return out;
-}
 void expect_color(const Mean& mean, Rgb expected) {
     EXPECT_LT(mean.error, 1e-3);
     for (int c = 0; c < 3; ++c)
@@ -126,9 +101,8 @@ TEST(GltfSpecularGlossiness, GlossIsOneMinusRoughness) {
     EXPECT_EQ(part<OpenPbrMaterial>(loaded.scene, mix.first).base_metalness.value, 0);
     EXPECT_EQ(part<OpenPbrMaterial>(loaded.scene, mix.second).base_metalness.value, 1);
 
-    const LoadedScene mapped =
-        wall(by("\"glossinessFactor\": 0.5, \"specularGlossinessTexture\": {\"index\": 0}"),
-             texture_of({9, 9, 9, 0, 9, 9, 9, 102, 9, 9, 9, 255}));
+    const LoadedScene mapped = wall(by("\"glossinessFactor\": 0.5, \"specularGlossinessTexture\": {\"index\": 0}"),
+                                    texture_of({9, 9, 9, 0, 9, 9, 9, 102, 9, 9, 9, 255}));
     const auto both = part<MixMaterial>(mapped.scene, mapped.scene.instances.at(0).material);
     const auto dielectric = part<MixMaterial>(mapped.scene, both.first);
     EXPECT_TRUE(part<DiffuseMaterial>(mapped.scene, dielectric.first).two_sided);
@@ -160,10 +134,10 @@ TEST(GltfSpecularGlossiness, MapsOfAllKindsOfTexels) {
 }
 
 TEST(GltfSpecularGlossiness, AlphaOpacityAndReliefAreThoseOfTheMaterial) {
-    const LoadedScene loaded = wall(
-        "\"alphaMode\": \"BLEND\", \"normalTexture\": {\"index\": 0}, " +
-        by("\"diffuseFactor\": [0.1, 0.2, 0.3, 0.5], \"specularFactor\": [0.5, 0.5, 0.5], \"diffuseTexture\": "
-           "{\"index\": 0}"));
+    const LoadedScene loaded =
+        wall("\"alphaMode\": \"BLEND\", \"normalTexture\": {\"index\": 0}, " +
+             by("\"diffuseFactor\": [0.1, 0.2, 0.3, 0.5], \"specularFactor\": [0.5, 0.5, 0.5], \"diffuseTexture\": "
+                "{\"index\": 0}"));
     const Scene& scene = loaded.scene;
     const auto mix = part<MixMaterial>(scene, scene.instances.at(0).material);
     ASSERT_EQ(scene.reliefs.size(), 2u);
@@ -194,9 +168,9 @@ TEST(GltfSpecularGlossiness, IsReadInstead) {
     const LoadedScene clamped = load(by("\"specularFactor\": [2, 0.5, -1], \"glossinessFactor\": 0.5"));
     EXPECT_TRUE(has(clamped.diagnostics, "'specularFactor' of a material must be between 0 and 1"));
     EXPECT_EQ(part<OpenPbrMaterial>(clamped.scene, MaterialId{0}).base_color.value, (Rgb{1, 0.5f, 0}));
-    const LoadedScene beside =
-        load(by("\"glossinessFactor\": 0.5", ", \"KHR_materials_ior\": {\"ior\": 2}, \"KHR_materials_transmission\": "
-                                             "{\"transmissionFactor\": 1}"));
+    const LoadedScene beside = load(by("\"glossinessFactor\": 0.5",
+                                       ", \"KHR_materials_ior\": {\"ior\": 2}, \"KHR_materials_transmission\": "
+                                       "{\"transmissionFactor\": 1}"));
     EXPECT_TRUE(has(beside.fidelity, "KHR_materials_ior has no effect beside"));
     EXPECT_TRUE(has(beside.fidelity, "KHR_materials_transmission has no effect beside"));
     EXPECT_EQ(part<OpenPbrMaterial>(beside.scene, MaterialId{0}).transmission_weight.value, 0);

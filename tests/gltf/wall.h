@@ -1,6 +1,8 @@
 // A wall that fills the picture, with a material of a glTF file.
 #pragma once
 
+#include <cmath>
+
 #include "gltf_builder.h"
 #include "image/samples.h"
 #include "render/render_support.h"
@@ -55,6 +57,33 @@ inline std::vector<Rgb> picture(const std::string& material) {
     std::vector<Rgb> out;
     for (size_t i = 0; i < image.pixels.size(); i += 3)
         out.push_back({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
+    return out;
+}
+
+/// The mean of columns of a wall, seen at a right angle, below a white sky; with the largest error of the mean.
+struct Mean {
+    Rgb color;
+    double error = 0;
+};
+inline Mean under_a_white_sky(Scene scene, uint32_t first_column, uint32_t last_column) {
+    scene.lights = {EnvironmentLight{}};
+    RenderSettings settings;
+    settings.width = kWidth, settings.height = kHeight;
+    settings.samples_per_pixel = 1024;
+    settings.filter = {FilterKind::box, 0.5f};
+    const Image image = run(prepared(std::move(scene)), settings).image;
+    double sum[3] = {}, squares[3] = {}, n = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = first_column; x < last_column; ++x, ++n)
+            for (uint32_t c = 0; c < 3; ++c) {
+                const double v = double(image.pixels[(y * kWidth + x) * 3 + c]);
+                sum[c] += v, squares[c] += v * v;
+            }
+    Mean out;
+    for (int c = 0; c < 3; ++c) {
+        out.color[c] = static_cast<float>(sum[c] / n);
+        out.error = std::max(out.error, std::sqrt(std::max(squares[c] / n - sum[c] * sum[c] / (n * n), 0.0) / n));
+    }
     return out;
 }
 

@@ -87,7 +87,14 @@ std::vector<Change> changes() {
         [](Scene& s) { open_pbr(s).specular_color.value.b = 0; },
         [](Scene& s) { open_pbr(s).specular_roughness.value = 1; },
         [](Scene& s) { open_pbr(s).specular_ior = 2; },
-        [](Scene& s) { open_pbr(s).specular_roughness_anisotropy = 1; },
+        [](Scene& s) { open_pbr(s).specular_roughness_anisotropy.value = 1; },
+        [](Scene& s) { open_pbr(s).specular_grain_shape = GrainShape::gltf; },
+        [](Scene& s) { open_pbr(s).geometry_tangent.rotation = 1; },
+        [](Scene& s) { open_pbr(s).geometry_tangent.texture = TextureId{1}; },
+        [](Scene& s) { open_pbr(s).geometry_coat_normal = NormalMap{}; },
+        [](Scene& s) {
+            open_pbr(s).geometry_coat_normal = NormalMap{TextureId{0}, 2};
+        },
         [](Scene& s) { open_pbr(s).transmission_weight.value = 1; },
         [](Scene& s) { open_pbr(s).transmission_color.value.r = 0; },
         [](Scene& s) { std::get<GlassMaterial>(s.materials[2]).abbe = 30; },

@@ -91,8 +91,15 @@ void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     add_case("default", {}, false, 0.09f);
     add_case("white", white, true, 0.25f);
     OpenPbrMaterial m = white;
-    m.specular_roughness_anisotropy = 0.7f, m.base_diffuse_roughness = 0.8f;
+    m.specular_roughness_anisotropy.value = 0.7f, m.base_diffuse_roughness = 0.8f;
     add_case("white with a grain", m, true, 0.1f);
+    m = white;
+    m.specular_roughness_anisotropy = {0.8f, level}, m.specular_roughness = {0.7f, level};
+    m.specular_grain_shape = GrainShape::gltf, m.geometry_tangent.rotation = 30;
+    add_case("white with a textured grain", m, true, 0.15f);
+    m.base_metalness.value = 1;
+    add_case("white metal with a textured grain", m, true, 0.15f);
+    out.back().energy_error = 1e-2;
     m = white;
     m.base_metalness.value = 1;
     add_case("white metal", m, true, 0.25f);

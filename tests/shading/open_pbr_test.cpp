@@ -60,9 +60,9 @@ TEST(OpenPbr, RandomMaterialsGainNothing) {
         OpenPbrMaterial m;
         const auto some = [&](float& x) { x = static_cast<float>(random.between(0, 1)); };
         for (float* x : {&m.base_weight, &m.base_metalness.value, &m.base_diffuse_roughness, &m.specular_weight,
-                         &m.specular_roughness.value, &m.specular_roughness_anisotropy, &m.subsurface_weight.value,
-                         &m.fuzz_weight.value, &m.fuzz_roughness.value, &m.coat_weight, &m.coat_roughness.value,
-                         &m.coat_roughness_anisotropy, &m.coat_darkening})
+                         &m.specular_roughness.value, &m.specular_roughness_anisotropy.value,
+                         &m.subsurface_weight.value, &m.fuzz_weight.value, &m.fuzz_roughness.value, &m.coat_weight,
+                         &m.coat_roughness.value, &m.coat_roughness_anisotropy, &m.coat_darkening})
             some(*x);
         if (i % 3 == 0) some(m.transmission_weight.value);
         m.geometry_thin_walled = i % 6 == 0;

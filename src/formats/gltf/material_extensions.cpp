@@ -1,5 +1,6 @@
 // The extensions of materials, as far as OpenPBR says the same or comes near.
 #include <cmath>
+#include <numbers>
 
 #include "formats/gltf/materials.h"
 #include "math/vector.h"
@@ -98,7 +99,7 @@ void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
     s.coat_darkening = 0;
     read_weight(clearcoat, "clearcoatTexture", Plane::red, r,
                 [](OpenPbrMaterial& without) { without.coat_weight = 0; });
-    no_texture(clearcoat, "clearcoatNormalTexture");
+    s.geometry_coat_normal = read_normal_map(clearcoat, "clearcoatNormalTexture", r);
 }
 
 /// As fuzz, of the same distribution of fibres: the extension squares its roughness, OpenPBR does not. What a base
@@ -117,20 +118,20 @@ void Materials::read_sheen(const Object& sheen, Reading& r) {
     for (int c = 0; c < 3; ++c) s.fuzz_color.value[c] = min_of(s.fuzz_color.value[c], 1.0f);
 }
 
-/// α along the grain is mix(α, 1, strength²), across it α: the roughness and anisotropy of OpenPBR that give the two.
+/// The texture has the direction in red and green and the strength in blue.
 void Materials::read_anisotropy(const Object& anisotropy, Reading& r) {
     OpenPbrMaterial& s = r.surface;
-    const double strength = unit(anisotropy, "anisotropyStrength", 0);
+    const float strength = unit(anisotropy, "anisotropyStrength", 0);
     if (strength == 0) return;
-    const double rough = s.specular_roughness.value, across = max_of(rough * rough, 1e-4);
-    const double along = across + (1 - across) * strength * strength;
-    const double ratio = across / along, squared = along / std::sqrt(2 / (1 + ratio * ratio));
-    s.specular_roughness.value = static_cast<float>(min_of(std::sqrt(squared), 1.0));
-    s.specular_roughness_anisotropy = static_cast<float>(1 - ratio);
-    if (anisotropy.number_or("anisotropyRotation", 0, {-1e6, 1e6}) != 0)
-        context_.not_honoured("the grain of a material is not turned by 'anisotropyRotation'",
-                              anisotropy.offset_of("anisotropyRotation"));
-    no_texture(anisotropy, "anisotropyTexture");
+    s.specular_grain_shape = GrainShape::gltf;
+    s.specular_roughness_anisotropy = {strength};
+    const double radians = anisotropy.number_or("anisotropyRotation", 0, {-1e6, 1e6});
+    s.geometry_tangent.rotation = static_cast<float>(radians * (180 / std::numbers::pi));
+    const auto use = images_.use(anisotropy, "anisotropyTexture");
+    if (!use) return;
+    s.specular_roughness_anisotropy.texture = texture(*use, Plane::blue, ColorSpace::linear, r);
+    s.geometry_tangent.texture = texture(*use, Plane::color, ColorSpace::linear, r);
+    r.grain_uv_set = use->uv_set;
 }
 
 /// As OpenPBR's thin film, which lies where the extension has it: on the base, below the coat.

@@ -128,7 +128,7 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
     const bool there = s.geometry_opacity.value == 1 && !s.geometry_opacity.texture;
     const bool layered = s.coat_weight > 0 || s.fuzz_weight.value > 0 || s.thin_film_weight > 0;
     if (!there || layered || (s.base_color.texture && !is_white(s.base_color.value))) return std::nullopt;
-    const bool smooth = s.specular_roughness.value == 0;
+    const bool smooth = s.specular_roughness.value == 0 && s.specular_roughness_anisotropy.value == 0;
     if (s.base_metalness.value == 1 && !s.base_metalness.texture && smooth)
         return ConductorMaterial{SchlickReflectance{color()}, Roughness{}};
     if (s.base_metalness.value > 0) return std::nullopt;
@@ -199,17 +199,21 @@ MaterialId Materials::make(const Reading& r, const std::string& name) {
 }
 
 /// Section 3.9.3. The map turns the normals; `scale` multiplies what is along the surface.
-void Materials::read_normals(const Object& material, Reading& r) {
-    const auto use = images_.use(material, "normalTexture");
-    if (!use) return;
+std::optional<NormalMap> Materials::read_normal_map(const Object& object, std::string_view key, Reading& r) {
+    const auto use = images_.use(object, key);
+    if (!use) return std::nullopt;
     constexpr double kMost = 100;
-    const Object info = *material.object("normalTexture");
+    const Object info = *object.object(key);
     const double scale = info.number_or("scale", 1, {-1e30, 1e30});
     if (std::fabs(scale) > kMost)
         context_.not_honoured("the 'scale' of a normal texture beyond 100 is taken as 100", info.offset_of("scale"));
-    r.normals = NormalMap{texture(*use, Plane::color, ColorSpace::linear, r),
-                          static_cast<float>(clamp_to(scale, -kMost, kMost))};
-    r.tangents = use->uv_set;
+    if (!r.tangents) r.tangents = use->uv_set;
+    return NormalMap{texture(*use, Plane::color, ColorSpace::linear, r),
+                     static_cast<float>(clamp_to(scale, -kMost, kMost))};
+}
+
+void Materials::read_normals(const Object& material, Reading& r) {
+    r.normals = read_normal_map(material, "normalTexture", r);
 }
 
 Look Materials::finish(const Reading& r, const std::string& name) {
@@ -218,8 +222,8 @@ Look Materials::finish(const Reading& r, const std::string& name) {
     out.emission = r.emission;
     out.emission_texture = r.emission_texture;
     out.uv_sets = r.uv_sets;
-    const bool has_grain = r.surface.specular_roughness_anisotropy > 0;
-    out.tangents = r.tangents ? r.tangents : has_grain ? std::optional(0u) : std::nullopt;
+    const bool has_grain = r.surface.specular_roughness_anisotropy.value > 0;
+    out.tangents = r.tangents ? r.tangents : has_grain ? std::optional(r.grain_uv_set) : std::nullopt;
     if (out.tangents) out.uv_sets |= 1u << *out.tangents;
     return out;
 }
@@ -234,8 +238,8 @@ Look Materials::read(const Object& material, VertexColors colors, const std::str
     if (colors != VertexColors::none) multiply_by_vertices(r.surface.base_color.texture, false);
     read_alpha(material, r);
     read_emission(material, r);
+    if (!material.extension("KHR_materials_unlit")) read_normals(material, r);
     read_extensions(material, r);
-    if (!r.unlit) read_normals(material, r);
     Look out = finish(r, name);
     out.two_sided = material.boolean_or("doubleSided", false);
     return out;

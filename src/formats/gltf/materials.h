@@ -41,6 +41,7 @@ private:
         uint32_t uv_sets = 0;
         std::optional<NormalMap> normals;
         std::optional<uint32_t> tangents;
+        uint32_t grain_uv_set = 0;
         std::optional<TextureUse> base_color;
         bool unlit = false;
         /// Of KHR_materials_pbrSpecularGlossiness: the part of the surface that is metal; the rest is as it stands
@@ -71,6 +72,7 @@ private:
     void read_alpha(const Object& material, Reading& r);
     void read_emission(const Object& material, Reading& r);
     void read_normals(const Object& material, Reading& r);
+    std::optional<NormalMap> read_normal_map(const Object& object, std::string_view key, Reading& r);
     void multiply_by_vertices(std::optional<TextureId>& texture, bool alpha);
     MaterialId make(const Reading& r, const std::string& name);
     MaterialId make_plain(const Reading& r, const std::string& name);

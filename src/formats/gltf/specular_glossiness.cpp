@@ -108,9 +108,8 @@ void Materials::read_specular_glossiness(const Object& extension, Reading& r) {
 
 /// These say something else about what the extension says already, and their specifications exclude them.
 void Materials::report_excluded(const Object& material) {
-    for (const char* name :
-         {"KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission", "KHR_materials_volume",
-          "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"})
+    for (const char* name : {"KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+                             "KHR_materials_volume", "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"})
         if (const auto extension = material.extension(name))
             context_.not_honoured(std::string(name) + " has no effect beside KHR_materials_pbrSpecularGlossiness",
                                   extension->offset());

@@ -8,7 +8,8 @@ namespace steradian::gltf {
 /// A coloured reflectance at normal incidence as a metal on a part of the surface and a dielectric of index 1.5 on the
 /// rest. By Schlick's approximation, in which reflectances at normal incidence mix linearly and all become 1 at grazing
 /// angles, the two together reflect `specular` at every angle. The part is the smallest for which the metal reflects no
-/// more than 1: then what the dielectric leaves for the matte base below it is 1 - max(specular), as the extension says.
+/// more than 1: then what the dielectric leaves for the matte base below it is 1 - max(specular), as the extension
+/// says.
 struct SplitReflectance {
     float metalness = 0;
     Rgb metal{1, 1, 1};    ///< of the metal; a channel that would have to be below 0 is 0

@@ -53,6 +53,8 @@ private:
     std::optional<Relief> read_relief(ObjectReader& material);
     /// A texture of numbers that are no colours: linear.
     TextureId read_numbers(Value value, std::string_view what);
+    /// A texture, or an object with one and more.
+    NormalMap read_normal_map(Value value, std::string_view what);
     MixMaterial read_mix(ObjectReader& material);
     void read_materials(Value value);
     MaterialId read_material(Value value, const std::string& name);

@@ -50,7 +50,10 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     input("specular_color", m.specular_color);
     input("specular_roughness", m.specular_roughness);
     number("specular_ior", m.specular_ior, {0.1, 10});
-    number("specular_roughness_anisotropy", m.specular_roughness_anisotropy);
+    input("specular_roughness_anisotropy", m.specular_roughness_anisotropy);
+    number("geometry_tangent_rotation", m.geometry_tangent.rotation, {-360, 360});
+    if (const auto direction = material.find("geometry_tangent"))
+        m.geometry_tangent.texture = read_numbers(*direction, "'geometry_tangent'");
     input("transmission_weight", m.transmission_weight);
     input("transmission_color", m.transmission_color);
     number("transmission_dispersion_scale", m.transmission_dispersion_scale);
@@ -67,6 +70,8 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("coat_roughness_anisotropy", m.coat_roughness_anisotropy);
     number("coat_ior", m.coat_ior, {1.01, 3});
     number("coat_darkening", m.coat_darkening);
+    if (const auto normals = material.find("geometry_coat_normal"))
+        m.geometry_coat_normal = read_normal_map(*normals, "'geometry_coat_normal'");
     number("thin_film_weight", m.thin_film_weight);
     number("thin_film_thickness", m.thin_film_thickness, {0, 10});
     number("thin_film_ior", m.thin_film_ior, {1, 3});

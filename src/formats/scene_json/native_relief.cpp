@@ -37,24 +37,29 @@ TextureId NativeLoader::read_numbers(Value value, std::string_view what) {
     return *texture;
 }
 
+NormalMap NativeLoader::read_normal_map(Value value, std::string_view what) {
+    static constexpr Range kStrength{0, 100};
+    NormalMap out;
+    if (!value.is(Kind::object)) {
+        out.texture = read_numbers(value, what);
+        return out;
+    }
+    ObjectReader reader(source_, value, kNormalMapSpec, what);
+    out.texture = read_numbers(reader.require("texture"), "a normal map");
+    out.strength = reader.number_or("strength", out.strength, kStrength);
+    out.flip_y = reader.boolean_or("flip_y", out.flip_y);
+    reader.finish();
+    return out;
+}
+
 std::optional<Relief> NativeLoader::read_relief(ObjectReader& material) {
-    static constexpr Range kStrength{0, 100}, kHeight{-1e6, 1e6};
+    static constexpr Range kHeight{-1e6, 1e6};
     const auto normals = material.find("normal_map"), heights = material.find("bump_map");
     if (normals && heights)
         source_.fail(material.key_offset("bump_map"), "either 'normal_map' or 'bump_map', not both");
     Relief out;
     if (normals) {
-        NormalMap map;
-        if (normals->is(Kind::object)) {
-            ObjectReader reader(source_, *normals, kNormalMapSpec, "'normal_map'");
-            map.texture = read_numbers(reader.require("texture"), "a normal map");
-            map.strength = reader.number_or("strength", map.strength, kStrength);
-            map.flip_y = reader.boolean_or("flip_y", map.flip_y);
-            reader.finish();
-        } else {
-            map.texture = read_numbers(*normals, "'normal_map'");
-        }
-        out.map = map;
+        out.map = read_normal_map(*normals, "'normal_map'");
     } else if (heights) {
         ObjectReader reader(source_, *heights, kBumpMapSpec, "'bump_map'");
         BumpMap map;

@@ -11,13 +11,22 @@
 
 namespace steradian {
 
-template <class AnyLobe>
-BsdfEval eval_flat(const AnyLobe& any, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
+template <class OneLobe>
+BsdfEval eval_flat(const OneLobe& lobe, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
+    return eval_lobe(lobe, g, wo, wi);
+}
+template <class... Kinds>
+BsdfEval eval_flat(const std::variant<Kinds...>& any, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
     return std::visit([&](const auto& lobe) { return eval_lobe(lobe, g, wo, wi); }, any);
 }
 
-template <class AnyLobe>
-std::optional<BsdfSample> sample_flat(const AnyLobe& any, const LobeGeometry& g, Vec3 wo, float uc, Vec2 u) {
+template <class OneLobe>
+std::optional<BsdfSample> sample_flat(const OneLobe& lobe, const LobeGeometry& g, Vec3 wo, float uc, Vec2 u) {
+    return sample_lobe(lobe, g, wo, uc, u);
+}
+template <class... Kinds>
+std::optional<BsdfSample> sample_flat(const std::variant<Kinds...>& any, const LobeGeometry& g, Vec3 wo, float uc,
+                                      Vec2 u) {
     return std::visit([&](const auto& lobe) { return sample_lobe(lobe, g, wo, uc, u); }, any);
 }
 

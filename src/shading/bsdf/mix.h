@@ -11,7 +11,7 @@
 #include "shading/bsdf/fold.h"
 #include "shading/bsdf/glass.h"
 #include "shading/bsdf/mirror.h"
-#include "shading/bsdf/open_pbr.h"
+#include "shading/bsdf/open_pbr_coat.h"
 #include "shading/bsdf/refraction.h"
 #include "shading/bsdf/rough_glass.h"
 #include "shading/bsdf/thin_glass.h"

@@ -12,14 +12,25 @@
 
 namespace steradian {
 
-inline Microfacets open_pbr_facets(float roughness, float anisotropy, float level) {
-    const Vec2 alpha = open_pbr_alpha(roughness, anisotropy);
+inline Microfacets open_pbr_facets(Vec2 alpha, float level) {
     return {max_of(min_of(alpha.x, 1.0f), kMinAlpha), max_of(min_of(alpha.y, 1.0f), kMinAlpha), level};
+}
+
+/// Of the base, where its roughness is that.
+inline Microfacets open_pbr_base(const OpenPbrMaterial& m, const OpenPbrTables& tables, float roughness,
+                                 float anisotropy) {
+    const Vec2 alpha = open_pbr_alpha(roughness, anisotropy, m.specular_grain_shape);
+    Microfacets out = open_pbr_facets(alpha, tables.textured ? roughness : 1);
+    if (!tables.every_grain) return out;
+    out.level = std::sqrt(out.alpha_x);
+    out.across = out.alpha_y / out.alpha_x;
+    return out;
 }
 
 /// Of the coat, where its roughness is that.
 inline Microfacets open_pbr_coat(const OpenPbrMaterial& m, const OpenPbrTables& tables, float roughness) {
-    return open_pbr_facets(roughness, m.coat_roughness_anisotropy, tables.coat_textured ? roughness : 1);
+    return open_pbr_facets(open_pbr_alpha(roughness, m.coat_roughness_anisotropy),
+                           tables.coat_textured ? roughness : 1);
 }
 
 /// The metal: Schlick's approximation with a dip at 82 degrees ("F82-tint").
@@ -72,8 +83,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     const Rgb base = color(m.base_color) * m.base_weight;
     const float coat_roughness = number(m.coat_roughness);
     const float roughness = open_pbr_roughness(m, number(m.specular_roughness), coat_roughness);
-    const float level = tables.textured ? roughness : 1;
-    const Microfacets facets = open_pbr_facets(roughness, m.specular_roughness_anisotropy, level);
+    const Microfacets facets = open_pbr_base(m, tables, roughness, number(m.specular_roughness_anisotropy));
     out.metalness = number(m.base_metalness);
     out.specular_color = color(m.specular_color);
     out.metal = open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get());
@@ -117,6 +127,7 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
 
 inline bool lobe_is_specular(const OpenPbrBsdf&) { return false; }
 inline bool lobe_only_reflects(const OpenPbrBsdf& lobe) {
+    if (lobe.coat_apart) return false;
     const bool passes = lobe.transmission > 0 || (lobe.passed_share > 0 && lobe.subsurface > 0);
     return !passes || lobe.metalness == 1;
 }
@@ -125,12 +136,13 @@ inline bool lobe_has_direction(const OpenPbrBsdf& lobe) {
 }
 
 /// What is left for each lobe of the light from wo, as a factor of the lobe; and with what probability it is sampled.
+/// Seen from the coat's frame wo is wo_coat.
 struct OpenPbrShares {
     double fuzz = 0, coat = 0, metal = 0, dielectric = 0, diffuse = 0, glass = 0;
     double p_fuzz = 0, p_coat = 0, p_metal = 0, p_dielectric = 0, p_diffuse = 0, p_glass = 0, p_through = 0;
     Rgb diffuse_tint{1, 1, 1};  ///< by a film: what it lets pass, over its mean
 
-    OpenPbrShares(const OpenPbrBsdf& lobe, Vec3d wo) {
+    OpenPbrShares(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wo_coat) {
         const OpenPbrTables& t = *lobe.tables;
         double left = 1;
         fuzz = left * lobe.fuzz_weight;
@@ -141,7 +153,7 @@ struct OpenPbrShares {
         }
         coat = left * lobe.coat_weight;
         if (t.coat) {
-            p_coat = coat * (1 - t.coat->loss(lobe.coat, wo));
+            p_coat = coat * (1 - t.coat->loss(lobe.coat, wo_coat));
             left -= p_coat;
         }
         metal = left * lobe.metalness;
@@ -219,8 +231,7 @@ inline double open_pbr_diffuse_pdf(const OpenPbrBsdf& lobe, double mu_o, double 
     return (1 - uniform) * mu_i / std::numbers::pi + uniform * warp::kHemispherePdf;
 }
 
-inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool outside) {
-    const OpenPbrShares s(lobe, wo);
+inline LocalEval eval_shares(const OpenPbrBsdf& lobe, const OpenPbrShares& s, Vec3d wo, Vec3d wi, bool outside) {
     const OpenPbrTables& t = *lobe.tables;
     LocalEval out;
     const auto add = [&](const LocalEval& e, double share, double p, Rgb tint) {
@@ -258,9 +269,13 @@ inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool ou
     return out;
 }
 
-inline std::optional<Vec3d> sample_local(const OpenPbrBsdf& lobe, Vec3d wo, bool outside, float uc, Vec2 u) {
-    const OpenPbrShares s(lobe, wo);
-    double left = uc;
+inline LocalEval eval_local(const OpenPbrBsdf& lobe, Vec3d wo, Vec3d wi, bool outside) {
+    return eval_shares(lobe, OpenPbrShares(lobe, wo, wo), wo, wi, outside);
+}
+
+/// `left` is uniform below the sum of the probabilities.
+inline std::optional<Vec3d> sample_shares(const OpenPbrBsdf& lobe, const OpenPbrShares& s, Vec3d wo, bool outside,
+                                          double left, Vec2 u) {
     // Whether p chooses; the number that is left is uniform again.
     const auto chooses = [&](double p) {
         if (left < p) {
@@ -293,13 +308,8 @@ inline std::optional<Vec3d> sample_local(const OpenPbrBsdf& lobe, Vec3d wo, bool
     return left < uniform * s.p_diffuse ? warp::hemisphere(u) : warp::cosine_hemisphere(u);
 }
 
-inline BsdfEval eval_lobe(const OpenPbrBsdf& lobe, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
-    return eval_by_frame(lobe, g, wo, wi);
-}
-
-inline std::optional<BsdfSample> sample_lobe(const OpenPbrBsdf& lobe, const LobeGeometry& g, Vec3 wo, float uc,
-                                             Vec2 u) {
-    return sample_by_frame(lobe, g, wo, uc, u);
+inline std::optional<Vec3d> sample_local(const OpenPbrBsdf& lobe, Vec3d wo, bool outside, float uc, Vec2 u) {
+    return sample_shares(lobe, OpenPbrShares(lobe, wo, wo), wo, outside, uc, u);
 }
 
 }  // namespace steradian
