@@ -58,6 +58,7 @@ void check_meshes(Check& check);
 void check_open_glass(Check& check);
 void check_orientation(Check& check);
 void check_coincidence(Check& check);
+void check_overlap(Check& check);
 void check_lights(Check& check);
 void check_cameras(Check& check);
 void check_scale(Check& check);

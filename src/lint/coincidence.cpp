@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <map>
 #include <tuple>
 
 #include "lint/check.h"
+#include "lint/place_hash.h"
 #include "math/ray.h"
 #include "math/transform.h"
 
@@ -26,16 +26,6 @@ struct Placed {
 using Corners = std::array<Vec3, 3>;
 
 bool less(Vec3 a, Vec3 b) { return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z); }
-
-uint64_t hash_of(const Corners& sorted) {
-    uint64_t h = 0;
-    for (const Vec3& p : sorted)
-        for (int axis = 0; axis < 3; ++axis) {
-            h ^= std::bit_cast<uint32_t>(p[axis] + 0.0f);  // -0 is where 0 is
-            h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15u;
-        }
-    return h ^ (h >> 32);
-}
 
 class Coincidence {
 public:
@@ -69,7 +59,7 @@ private:
             for (uint32_t t = 0; mesh && 3 * size_t(t) + 2 < mesh->indices.size(); ++t)
                 if (Corners c = corners(i, t); c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) {
                     std::sort(c.begin(), c.end(), less);
-                    all_.push_back({hash_of(c), i, t});
+                    all_.push_back({place_hash(c), i, t});
                 }
         }
         return true;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lint/check.h"
+#include "lint/pieces.h"
 #include "lint/texels.h"
 #include "math/transform.h"
 #include "scene/intensity_profile.h"
@@ -17,7 +18,8 @@ bool needs_light(const RenderSettings& settings) {
 
 class LightCheck {
 public:
-    explicit LightCheck(Check& check) : check_(check), scene_(check.scene), texels_(check.scene) {}
+    explicit LightCheck(Check& check)
+        : check_(check), scene_(check.scene), texels_(check.scene), rays_(check.scene, check.world) {}
 
     void run() {
         bool any = false;
@@ -40,6 +42,7 @@ public:
             const auto* area = std::get_if<AreaLight>(&scene_.lights[i]);
             if (points.empty()) continue;
             if (!has_time()) return;
+            if (area && covered(i, *area)) continue;
             for (uint32_t k = 0; k < scene_.instances.size(); ++k)
                 if (!(area && index(area->instance) == k) && check_.world.box(k).contains(points[0]) && is_wall(k) &&
                     all_inside(k, points) && !seen_inside(k)) {
@@ -87,6 +90,61 @@ private:
         return out;
     }
 
+    // --- Lights on walls ---------------------------------------------------------------------------------------
+
+    /// Points of a flat light, and where it shines.
+    struct Sheet {
+        std::vector<Vec3d> points;
+        Vec3d normal;
+        double size = 0;
+    };
+    std::optional<Sheet> sheet_of(uint32_t instance) const {
+        constexpr uint64_t kMostPieces = 64;
+        const uint64_t count = count_pieces(scene_, instance);
+        if (count == 0 || count > kMostPieces) return std::nullopt;
+        Sheet out;
+        Vec3d sum;
+        for (uint32_t k = 0; k < count; ++k) {
+            const auto c = piece(scene_, instance, k);
+            if (!c) return std::nullopt;
+            const Vec3d middle = ((*c)[0] + (*c)[1] + (*c)[2]) * (1.0 / 3);
+            // Near to the corners, so that a hole in the middle is no finding, nor is a wall that covers a part.
+            out.points.push_back(middle);
+            for (const Vec3d corner : *c) out.points.push_back(corner + (middle - corner) * 0.05);
+            sum = sum + cross((*c)[1] - (*c)[0], (*c)[2] - (*c)[0]);
+        }
+        const bool mirrored = determinant(scene_.instances[instance].world_from_object) < 0;
+        out.size = std::sqrt(length(sum) / 2);
+        out.normal = normalize(sum) * (mirrored ? -1.0 : 1.0);
+        for (const Vec3d p : out.points)
+            if (std::fabs(dot(p - out.points[0], out.normal)) > 1e-4 * out.size) return std::nullopt;
+        return out.size > 0 ? std::optional(out) : std::nullopt;
+    }
+
+    /// Something opaque is in the light's plane, or so close before it that nothing comes out, everywhere.
+    bool covered(uint32_t i, const AreaLight& light) {
+        constexpr double kCloseBy = 0.01, kRounding = 0x1p-20;
+        const uint32_t own = index(light.instance);
+        const auto sheet = sheet_of(own);
+        if (!sheet) return false;
+        const double slack = kRounding * (reach(sheet->points[0]) + sheet->size);
+        std::optional<uint32_t> by;
+        for (const double side : {1.0, -1.0}) {
+            if (side < 0 && !light.two_sided) break;
+            for (const Vec3d p : sheet->points) {
+                by = rays_.cover(p, sheet->normal * side, -slack, kCloseBy * sheet->size, own);
+                if (!by) return false;
+            }
+        }
+        const Element element{ElementKind::light, i};
+        check_.out.add(
+            Rule::light_in_wall, element,
+            fmt::format("{} lies in or just behind the surface of {} ({}), which hides it", check_.name(element),
+                        check_.object(*by), check_.material(scene_.instances[*by].material)),
+            "move it a little before the surface");
+        return true;
+    }
+
     /// Of many lights among many objects only the first ones are looked at.
     bool has_time() {
         constexpr uint64_t kMostPairs = uint64_t(1) << 28;
@@ -114,6 +172,7 @@ private:
     Check& check_;
     const Scene& scene_;
     Texels texels_;
+    Rays rays_;
     uint64_t pairs_ = 0;
 };
 

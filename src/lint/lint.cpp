@@ -85,6 +85,7 @@ Status check_scene(const Scene& scene, const RenderSettings& settings, Findings&
     check_open_glass(check);
     check_orientation(check);
     check_coincidence(check);
+    check_overlap(check);
     check_lights(check);
     check_cameras(check);
     check_scale(check);

@@ -1,7 +1,13 @@
 // Numbers of meshes that make no sense by themselves.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <vector>
+
 #include "lint/check.h"
+#include "lint/place_hash.h"
 #include "math/ray.h"
 
 namespace steradian::lint_detail {
@@ -83,6 +89,59 @@ void numbers(Check& check, Element element, const Mesh& mesh, const MeshFaults& 
     add(tangents, count_of(tangents, "tangent is", "tangents are") + " not finite and left out");
 }
 
+// --- The same triangle twice ---------------------------------------------------------------------------------------
+
+struct Turned {
+    uint64_t hash;
+    uint32_t triangle;
+};
+using Places = std::array<Vec3, 3>;
+
+/// The three corners from the least on, in their order: that of the same triangle with the same side outside.
+Places places_of(const Mesh& mesh, uint32_t triangle) {
+    Places p;
+    for (size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.indices[3 * size_t(triangle) + k]];
+    const auto less = [](Vec3 a, Vec3 b) { return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z); };
+    std::rotate(p.begin(), std::min_element(p.begin(), p.end(), less), p.end());
+    return p;
+}
+
+struct Duplicates {
+    uint64_t count = 0;
+    uint32_t first = 0;  ///< the first triangle that repeats another one
+};
+
+/// At 16 bytes a triangle. Both sides of a card, wound against each other, are no duplicates.
+Duplicates duplicates_of(const Mesh& mesh) {
+    std::vector<Turned> all;
+    all.reserve(mesh.indices.size() / 3);
+    for (uint32_t t = 0; 3 * size_t(t) + 2 < mesh.indices.size(); ++t) {
+        const Places p = places_of(mesh, t);
+        const bool usable = usable_position(p[0]) && usable_position(p[1]) && usable_position(p[2]);
+        if (usable && !has_no_area(p[0], p[1], p[2])) all.push_back({place_hash(p), t});
+    }
+    std::sort(all.begin(), all.end(), [](const Turned& a, const Turned& b) {
+        return std::tuple(a.hash, a.triangle) < std::tuple(b.hash, b.triangle);
+    });
+    Duplicates out;
+    for (size_t i = 1; i < all.size(); ++i) {
+        if (all[i].hash != all[i - 1].hash || places_of(mesh, all[i].triangle) != places_of(mesh, all[i - 1].triangle))
+            continue;
+        if (out.count++ == 0 || all[i].triangle < out.first) out.first = all[i].triangle;
+    }
+    return out;
+}
+
+void duplicates(Check& check, Element element, const Mesh& mesh) {
+    if (!check.out.wants(Rule::duplicate_triangles)) return;
+    const Duplicates found = duplicates_of(mesh);
+    if (found.count > 0)
+        check.out.add(Rule::duplicate_triangles, element,
+                      fmt::format("{}: {} again where another one is, the first is triangle {}", check.name(element),
+                                  count_of(found.count, "triangle is there", "triangles are there"), found.first),
+                      "light passes glass twice there, and lights shine twice");
+}
+
 }  // namespace
 
 void check_meshes(Check& check) {
@@ -95,6 +154,7 @@ void check_meshes(Check& check) {
             check.out.add(Rule::degenerate_triangles, element,
                           fmt::format("{}: {} without area, the first is triangle {}", check.name(element),
                                       count_of(faults.flat, "triangle", "triangles"), faults.first_flat));
+        duplicates(check, element, mesh);
         if (2 * faults.turned > faults.triangles)
             check.out.add(Rule::inverted_normals, element,
                           fmt::format("{}: the normals of {} of {} triangles point to the side that they are "

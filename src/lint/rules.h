@@ -21,7 +21,9 @@ enum class Rule : uint8_t {
     missing_colors,
     nan_vertices,
     degenerate_triangles,
+    duplicate_triangles,
     coincident_surfaces,
+    overlapping_surfaces,
     open_glass,
     inverted_normals,
     no_light,
@@ -32,7 +34,7 @@ enum class Rule : uint8_t {
     camera_in_wall,
     empty_view,
 };
-inline constexpr size_t kRuleCount = 22;
+inline constexpr size_t kRuleCount = 24;
 
 inline constexpr std::array<LintRule, kRuleCount> kRules{{
     {"not-honoured", Severity::warning, "the file asks for what the picture shows differently or not at all"},
@@ -47,7 +49,9 @@ inline constexpr std::array<LintRule, kRuleCount> kRules{{
     {"missing-colors", Severity::warning, "a material shows the colours of vertices that have none"},
     {"nan-vertices", Severity::warning, "numbers of a mesh are not finite or too large"},
     {"degenerate-triangles", Severity::note, "triangles without area"},
+    {"duplicate-triangles", Severity::note, "a mesh has the same triangle more than once"},
     {"coincident-surfaces", Severity::warning, "surfaces of different objects lie in the same place"},
+    {"overlapping-surfaces", Severity::warning, "surfaces of different objects overlap in one plane"},
     {"open-glass", Severity::warning, "the surface of a solid transparent body has holes"},
     {"inverted-normals", Severity::warning, "a surface is inside out, or its normals are"},
     {"no-light", Severity::warning, "nothing shines"},

@@ -1,6 +1,9 @@
 #include "lint/texels.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
+#include "image/tone.h"
 #include "math/vector.h"
 #include "shading/texture.h"
 
@@ -36,6 +39,34 @@ TexelRange range_of(const RawImage& image, ColorSpace space) {
 Rgb larger(Rgb a, Rgb b) { return {max_of(a.r, b.r), max_of(a.g, b.g), max_of(a.b, b.b)}; }
 
 }  // namespace
+
+NormalTexels normal_texels(const RawImage& image) {
+    constexpr uint64_t kMostLookedAt = 1 << 16;
+    constexpr double kRoughly = 0.25, kNearly = 0.06;
+    const uint64_t texels = uint64_t(image.width) * image.height, step = texels / kMostLookedAt + 1;
+    NormalTexels out;
+    Vec3d sum, sum_decoded;
+    Rgb first;
+    for (uint64_t i = 0; i < texels; i += step, ++out.looked_at) {
+        const Rgb c = texel(image, ColorSpace::linear, static_cast<uint32_t>(i % image.width),
+                            static_cast<uint32_t>(i / image.width));
+        const auto normal = [](double r, double g, double b) { return Vec3d{2 * r - 1, 2 * g - 1, 2 * b - 1}; };
+        const auto is_unit = [](Vec3d n, double slack) { return std::fabs(length(n) - 1) < slack; };
+        const Vec3d n = normal(c.r, c.g, c.b), decoded = normal(srgb_decode(c.r), srgb_decode(c.g), srgb_decode(c.b));
+        out.roughly_unit += is_unit(n, kRoughly) ? 1 : 0;
+        out.unit += is_unit(n, kNearly) && n.z > 0 ? 1 : 0;
+        out.unit_decoded += is_unit(decoded, kNearly) && decoded.z > 0 ? 1 : 0;
+        out.inwards += n.z < 0 ? 1 : 0;
+        sum = sum + n;
+        sum_decoded = sum_decoded + decoded;
+        if (i == 0) first = c;
+        out.varied = out.varied || c != first;
+    }
+    const double each = 1 / static_cast<double>(out.looked_at);
+    out.mean = static_cast<Vec3>(sum * each);
+    out.mean_decoded = static_cast<Vec3>(sum_decoded * each);
+    return out;
+}
 
 const TexelRange& Texels::range(ImageId image, ColorSpace space) {
     const std::pair key(image, space);

@@ -51,9 +51,10 @@ private:
             if (!texture || !seen_.insert({id, role}).second) return;
             const RawImage& image = scene_.images[index(texture->image)];
             const Element element{ElementKind::texture, index(id)};
-            color_space(*texture, image, element, role, what);
+            if (!(role == Role::color && is_of_normals(image, element, what)))
+                color_space(*texture, image, element, role, what);
             if (role == Role::number && !holds_integers(image)) range(*texture, element, what);
-            if (role == Role::normal) normals(*texture, image, element);
+            if (role == Role::normal) normals(image, element);
         });
     }
 
@@ -81,26 +82,36 @@ private:
     }
 
     /// Normals have length 1, which eight bits keep to within 1 %. Of anything else, half of the texels do not.
-    void normals(const ImageTexture& texture, const RawImage& image, Element element) {
-        constexpr uint64_t kMostLookedAt = 1 << 16;
-        constexpr double kSlack = 0.25;
-        const uint64_t texels = uint64_t(image.width) * image.height, step = texels / kMostLookedAt + 1;
-        uint64_t looked_at = 0, good = 0, inwards = 0;
-        for (uint64_t i = 0; i < texels; i += step, ++looked_at) {
-            const Rgb c = texel(image, texture.color_space, static_cast<uint32_t>(i % image.width),
-                                static_cast<uint32_t>(i / image.width));
-            const Vec3d n{2.0 * double(c.r) - 1, 2.0 * double(c.g) - 1, 2.0 * double(c.b) - 1};
-            good += std::fabs(length(n) - 1) < kSlack ? 1 : 0;
-            inwards += n.z < 0 ? 1 : 0;
+    void normals(const RawImage& image, Element element) {
+        const NormalTexels t = normal_texels(image);
+        std::string fault, hint = "2 rgb - 1 is a unit vector; a picture of heights is a bump map";
+        if (2 * t.roughly_unit < t.looked_at) {
+            fault = fmt::format("{} % of its texels are not of unit length",
+                                100 * (t.looked_at - t.roughly_unit) / t.looked_at);
+        } else if (2 * t.inwards > t.looked_at) {
+            fault = fmt::format("{} % of its texels point into the surface", 100 * t.inwards / t.looked_at);
         }
-        if (2 * good >= looked_at && 2 * inwards <= looked_at) return;
-        const std::string fault =
-            2 * good < looked_at
-                ? fmt::format("{} % of its texels are not of unit length", 100 * (looked_at - good) / looked_at)
-                : fmt::format("{} % of its texels point into the surface", 100 * inwards / looked_at);
-        check_.out.add(Rule::normal_map, element,
-                       fmt::format("{} is no normal map of {}: {}", check_.name(element), user_, fault),
-                       "2 rgb - 1 is a unit vector; a picture of heights is a bump map");
+        if (t.decoded() && (2 * t.unit < t.looked_at)) {
+            fault = fmt::format("{} % of its texels are unit vectors once they are decoded as sRGB",
+                                100 * t.unit_decoded / t.looked_at);
+            hint = "it was saved as colours: save the numbers as they are";
+        }
+        if (!fault.empty())
+            check_.out.add(Rule::normal_map, element,
+                           fmt::format("{} is no normal map of {}: {}", check_.name(element), user_, fault), hint);
+    }
+
+    /// Whether a picture of colours was meant.
+    bool is_of_normals(const RawImage& image, Element element, std::string_view what) {
+        if (!check_.out.wants(Rule::color_space) || !holds_integers(image) || image.channels < 3) return false;
+        const NormalTexels t = normal_texels(image);
+        if (!t.normal_map()) return false;
+        check_.out.add(Rule::color_space, element,
+                       fmt::format("{} is read as colours for '{}' of {} and looks like a normal map: {} % of its "
+                                   "texels are unit vectors about +z",
+                                   check_.name(element), what, user_, 100 * t.unit / t.looked_at),
+                       "were two textures mixed up?");
+        return true;
     }
 
     Check& check_;

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "lint/place_hash.h"
 #include "math/ray.h"
 
 namespace steradian::lint_detail {
@@ -18,7 +19,7 @@ public:
     }
     uint32_t first_at(uint32_t vertex) {
         const Vec3 p = mesh_.positions[vertex];
-        for (size_t slot = hash(p) & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
+        for (size_t slot = place_hash({&p, 1}) & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
             if (table_[slot] == kEmpty) table_[slot] = vertex;
             if (mesh_.positions[table_[slot]] == p) return table_[slot];
         }
@@ -26,14 +27,6 @@ public:
 
 private:
     static constexpr uint32_t kEmpty = 0xffffffffu;
-    static uint64_t hash(Vec3 p) {
-        uint64_t h = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            h ^= std::bit_cast<uint32_t>(p[axis] + 0.0f);  // -0 is where 0 is
-            h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15u;
-        }
-        return h ^ (h >> 32);
-    }
     const Mesh& mesh_;
     std::vector<uint32_t> table_;
 };

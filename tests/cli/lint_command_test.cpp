@@ -75,6 +75,31 @@ TEST_F(LintCommand, UsageAndBadScenesHaveTheirCodes) {
     EXPECT_EQ(broken.err.rfind("broken.json:1:", 0), 0u) << broken.err;
 }
 
+/// Files that want to do harm end as they do everywhere: with one line that says which and what.
+TEST_F(LintCommand, HostileFilesAreRefused) {
+    const std::string triangle =
+        "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 0}], \"meshes\": [{\"primitives\": "
+        "[{\"attributes\": {\"POSITION\": 0}}]}], \"accessors\": [{\"componentType\": 5126, \"type\": "
+        "\"VEC3\", \"count\": 4000000000}]}";
+    const std::pair<const char*, std::string> files[] = {
+        {"deep.json", std::string(200000, '[')},
+        {"deep.gltf", "{\"a\": " + std::string(200000, '{')},
+        {"lies.gltf", triangle},
+        {"short.glb", std::string("glTF\2\0\0\0\xff\xff\xff\x7f", 12)},
+        {"lies.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n"},
+        {"zeros.obj", std::string(1000, '\0')},
+    };
+    for (const auto& [name, content] : files) {
+        spit(folder_.file(name), content);
+        const Outcome o = steradian({"lint", name});
+        EXPECT_TRUE(o.code == 3 || o.code == 4) << name << " " << o.code << " " << o.out;
+        EXPECT_EQ(o.err.rfind(name, 0), 0u) << o.err.substr(0, 300);
+        EXPECT_EQ(o.out, "") << name;
+    }
+}
+
 TEST_F(LintCommand, RulesAreListed) {
     const Outcome o = steradian({"lint", "--list-rules"});
     EXPECT_EQ(o.code, 0);

@@ -161,35 +161,6 @@ TEST(LintScenes, WhatPrepareRefusesIsAnError) {
     EXPECT_EQ(steradian::lint(mesh.s, mesh.settings).error().code, ErrorCode::bad_input);
 }
 
-/// A closed body of 2 n² triangles on each of its two sides, a wavy slab.
-Mesh slab(uint32_t n) {
-    Mesh m;
-    const auto at = [&](uint32_t x, uint32_t y, float z) {
-        m.positions.push_back({float(x) / float(n), float(y) / float(n), z + 0.1f * float((x * 7 + y * 3) % 11) / 11});
-    };
-    for (const float z : {0.0f, 0.5f})
-        for (uint32_t y = 0; y <= n; ++y)
-            for (uint32_t x = 0; x <= n; ++x) at(x, y, z);
-    const uint32_t row = n + 1, side = row * row;
-    const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-        m.indices.insert(m.indices.end(), {a, b, c, a, c, d});
-    };
-    for (uint32_t y = 0; y < n; ++y)
-        for (uint32_t x = 0; x < n; ++x) {
-            const uint32_t i = y * row + x;
-            quad(i, i + row, i + row + 1, i + 1);
-            quad(side + i, side + i + 1, side + i + row + 1, side + i + row);
-        }
-    for (uint32_t k = 0; k < n; ++k) {
-        const uint32_t last = n * row;
-        quad(k, k + 1, side + k + 1, side + k);
-        quad(last + k + 1, last + k, side + last + k, side + last + k + 1);
-        quad((k + 1) * row, k * row, side + k * row, side + (k + 1) * row);
-        quad(k * row + n, (k + 1) * row + n, side + (k + 1) * row + n, side + k * row + n);
-    }
-    return m;
-}
-
 TEST(LintScenes, AMillionTriangles) {
     LintScene t;
     t.place(slab(500), t.material(GlassMaterial{}), translation(2, 0, 0));

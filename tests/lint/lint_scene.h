@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <functional>
 #include <map>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -100,5 +102,57 @@ inline Mesh unwelded(const Mesh& m) {
     return out;
 }
 inline Mesh triangle() { return Mesh{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}}; }
+
+/// A closed body of 2 n² triangles on each of its two sides, a wavy slab.
+inline Mesh slab(uint32_t n) {
+    Mesh m;
+    const auto at = [&](uint32_t x, uint32_t y, float z) {
+        m.positions.push_back({float(x) / float(n), float(y) / float(n), z + 0.1f * float((x * 7 + y * 3) % 11) / 11});
+    };
+    for (const float z : {0.0f, 0.5f})
+        for (uint32_t y = 0; y <= n; ++y)
+            for (uint32_t x = 0; x <= n; ++x) at(x, y, z);
+    const uint32_t row = n + 1, side = row * row;
+    const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+        m.indices.insert(m.indices.end(), {a, b, c, a, c, d});
+    };
+    for (uint32_t y = 0; y < n; ++y)
+        for (uint32_t x = 0; x < n; ++x) {
+            const uint32_t i = y * row + x;
+            quad(i, i + row, i + row + 1, i + 1);
+            quad(side + i, side + i + 1, side + i + row + 1, side + i + row);
+        }
+    for (uint32_t k = 0; k < n; ++k) {
+        const uint32_t last = n * row;
+        quad(k, k + 1, side + k + 1, side + k);
+        quad(last + k + 1, last + k, side + last + k, side + last + k + 1);
+        quad((k + 1) * row, k * row, side + k * row, side + (k + 1) * row);
+        quad(k * row + n, (k + 1) * row + n, side + (k + 1) * row + n, side + k * row + n);
+    }
+    return m;
+}
+
+/// A scene for a rule.
+struct Case {
+    const char* name;
+    const char* rule;  ///< the only one that finds something, once; "" for a near miss
+    std::function<void(LintScene&)> make;
+};
+inline void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+inline void expect_findings(const Case& c) {
+    LintScene t;
+    c.make(t);
+    const std::string rule = c.rule;
+    std::map<std::string, int> expected;
+    if (!rule.empty()) expected[rule] = 1;
+    std::string all;
+    for (const Finding& f : t.lint().findings) all += f.str() + "\n";
+    EXPECT_EQ(t.rules(), expected) << all;
+
+    LintOptions without;
+    if (!rule.empty()) without.disabled = {rule};
+    EXPECT_TRUE(t.lint(without).findings.empty());
+}
 
 }  // namespace steradian::test

@@ -12,13 +12,6 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-struct Case {
-    const char* name;
-    const char* rule;  ///< the only one that finds something, once; "" for a near miss
-    std::function<void(LintScene&)> make;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
-
 Material glass(float eta = 1.5f) { return GlassMaterial{eta}; }
 Affine at(double x, double y, double z) { return translation(x, y, z); }
 /// Replaces the grey of the sphere, whose material goes away.
@@ -545,30 +538,17 @@ const Case kWorldCases[] = {
 };
 
 class Rules : public testing::TestWithParam<Case> {};
-
-TEST_P(Rules, FindNothingElse) {
-    LintScene t;
-    GetParam().make(t);
-    const std::string rule = GetParam().rule;
-    std::map<std::string, int> expected;
-    if (!rule.empty()) expected[rule] = 1;
-    std::string all;
-    for (const Finding& f : t.lint().findings) all += f.str() + "\n";
-    EXPECT_EQ(t.rules(), expected) << all;
-
-    LintOptions without;
-    if (!rule.empty()) without.disabled = {rule};
-    EXPECT_TRUE(t.lint(without).findings.empty());
-}
+TEST_P(Rules, FindNothingElse) { expect_findings(GetParam()); }
 
 const auto kName = [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); };
 INSTANTIATE_TEST_SUITE_P(Material, Rules, testing::ValuesIn(kMaterialCases), kName);
 INSTANTIATE_TEST_SUITE_P(Mesh, Rules, testing::ValuesIn(kMeshCases), kName);
 INSTANTIATE_TEST_SUITE_P(World, Rules, testing::ValuesIn(kWorldCases), kName);
 
-/// "not-honoured" and "input" are for what readers say, tests/lint/files_test.cpp.
+/// "not-honoured" and "input" are for what readers say, tests/lint/files_test.cpp; more are in overlap_test.cpp.
 TEST(RuleTable, EachRuleHasAScene) {
-    std::set<std::string_view> tried{"not-honoured", "input", ""}, known{""};
+    std::set<std::string_view> tried{"not-honoured", "input", "", "overlapping-surfaces", "duplicate-triangles"},
+        known{""};
     for (const Case& c : kMaterialCases) tried.insert(c.rule);
     for (const Case& c : kMeshCases) tried.insert(c.rule);
     for (const Case& c : kWorldCases) tried.insert(c.rule);
