@@ -81,19 +81,28 @@ class Copier {
 public:
     explicit Copier(BinaryTree& out) : out_(out), source_(*out.nodes) {}
 
-    BinaryNode* copy(const TreeNode& from, const Box& box, uint32_t depth) {
-        BinaryNode* to = source_.next();
-        const BuildPrimitive bounds(box, 0, ItemKind::block);
-        to->set_box({Float4::load(bounds.lo), Float4::load(bounds.hi)});
-        to->begin = static_cast<uint32_t>(out_.primitives.size()), to->depth = depth;
-        for (size_t i = 0; i < from.count; ++i)
-            out_.primitives.emplace_back(box_of(from.primitives[i]), from.primitives[i].primID, ItemKind::block);
-        for (int i = 0; i < 2 && from.child[0]; ++i) to->child[i] = copy(*from.child[i], from.box[i], depth + 1);
-        to->end = static_cast<uint32_t>(out_.primitives.size());
-        return to;
+    uint32_t copy(const TreeNode& from, const Box& box) {
+        const uint32_t root = source_.next_two();
+        copy(from, box, root);
+        return root;
     }
 
 private:
+    void copy(const TreeNode& from, const Box& box, uint32_t to) {
+        const BuildPrimitive bounds(box, 0, ItemKind::block);
+        (*out_.nodes)[to].set_box({Float4::load(bounds.lo), Float4::load(bounds.hi)});
+        if (from.child[0]) {
+            const uint32_t left = source_.next_two(), right = left + 1;
+            copy(*from.child[0], from.box[0], left), copy(*from.child[1], from.box[1], right);
+            (*out_.nodes)[to].set_children(left, right, false, true);
+            return;
+        }
+        const size_t begin = out_.primitives.size();
+        for (size_t i = 0; i < from.count; ++i)
+            out_.primitives.emplace_back(box_of(from.primitives[i]), from.primitives[i].primID, ItemKind::block);
+        (*out_.nodes)[to].set_leaf(begin, out_.primitives.size(), ItemKind::block);
+    }
+
     static Box box_of(const RTCBuildPrimitive& p) {
         return {{p.lower_x, p.lower_y, p.lower_z}, {p.upper_x, p.upper_y, p.upper_z}};
     }
@@ -126,10 +135,10 @@ BinaryTree embree_tree(const BenchMesh& mesh, bool high) {
     if (!root || rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree builds no tree");
 
     BinaryTree tree;
-    tree.nodes = std::make_unique<BinaryPool>();
+    tree.nodes = std::make_unique<BinaryPool>(primitives.capacity());
     Box bounds;
     for (const Vec3& p : mesh.positions) bounds.extend(p);
-    tree.root = Copier(tree).copy(*root, bounds, 0);
+    tree.root = Copier(tree).copy(*root, bounds);
     return tree;
 }
 

@@ -161,7 +161,8 @@ Bvh our_tree(const BenchMesh& mesh, BvhBuilder builder) {
 Bvh gathered(BinaryTree tree) {
     Bvh bvh;
     BuildMonitor monitor;
-    gather(*tree.root, tree.primitives, monitor, bvh);
+    LeafPrimitives primitives{tree.primitives};
+    gather(*tree.nodes, tree.root, primitives, monitor, bvh);
     return bvh;
 }
 

@@ -13,7 +13,7 @@ namespace steradian::bench {
 /// A tree with the primitives that its leaves are ranges of. A triangle may be in several leaves.
 struct BinaryTree {
     std::unique_ptr<BinaryPool> nodes;
-    BinaryNode* root = nullptr;
+    uint32_t root = 0;
     LargeArray<BuildPrimitive> primitives;
 };
 

@@ -165,16 +165,15 @@ constexpr uint32_t kInstancesBetweenPolls = 16384;
 
 /// What is to stand for the instances on the upper level, `limit` of it at most when they are opened, which is done
 /// where it pays: built.far is there then.
-InstanceItems open_where_it_pays(const Placement& placement, uint64_t limit, const AccelOptions& options,
+InstanceParts open_where_it_pays(const Placement& placement, uint64_t limit, const AccelOptions& options,
                                  const Kernels& kernels, BuildMonitor& outer, Built& built) {
-    InstanceItems whole = whole_instances(placement);
-    if (limit <= whole.parts.size()) return whole;
+    InstanceParts whole = whole_instances(placement);
+    if (limit <= whole.size()) return whole;
     BuildMonitor monitor([&] { return outer.poll(); });
-    const auto level_over = [&](const InstanceItems& items) {
-        LargeArray<BuildPrimitive> boxes(items.boxes.size());
-        std::copy(items.boxes.begin(), items.boxes.end(), boxes.begin());
-        return build_level(std::move(boxes), {}, {}, {0, items.parts}, bvh_options(options, ItemKind::instance),
-                           monitor);
+    const auto level_over = [&](const InstanceParts& parts) {
+        LargeArray<BuildPrimitive> boxes;
+        append_boxes(parts, placement, built.levels, 0, boxes);
+        return build_level(std::move(boxes), {}, {}, {0, parts}, bvh_options(options, ItemKind::instance), monitor);
     };
     Level far = level_over(whole);
     const auto cost_over = [&](const Level& level) {
@@ -182,7 +181,7 @@ InstanceItems open_where_it_pays(const Placement& placement, uint64_t limit, con
         world.upper = level.view(), world.instances = placement.placed.data();
         return sampled_cost(world, kernels, far.bounds);
     };
-    InstanceItems opened = open_instances(whole, placement, built.levels, limit);
+    InstanceParts opened = open_instances(whole, placement, built.levels, limit);
     if (options.open == OpenInstances::automatic && !monitor.poll() &&
         cost_over(level_over(opened)) > kWorthOpening * cost_over(far))
         return whole;
@@ -196,7 +195,8 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
     const std::vector<bool>& upper = built.on_upper_level;
     const ItemCounts counts = count_items(geometries, instances, upper, options);
     LargeArray<BuildPrimitive> primitives;
-    primitives.reserve(counts.in_place + counts.most_items());
+    // With nothing in place, as many as there will be are known before there are any.
+    if (counts.in_place > 0) primitives.reserve(counts.in_place + counts.most_items());
     std::vector<LevelPart> parts;
     for (uint32_t i = 0; i < instances.size(); ++i) {
         const uint32_t geometry = instances[i].geometry;
@@ -226,17 +226,15 @@ Status build_upper(std::span<const Geometry> geometries, std::span<const Geometr
     }
     placement.add_margins();
     built.bounds = placement.scene, built.near = placement.near;
-    const InstanceItems items = open_where_it_pays(placement, counts.opened, options, kernels, monitor, built);
+    const InstanceParts items = open_where_it_pays(placement, counts.opened, options, kernels, monitor, built);
+    append_boxes(items, placement, built.levels, first_instance, primitives);
     built.instances = std::move(placement.placed);
-    for (BuildPrimitive box : items.boxes) {
-        box.id += first_instance;
-        primitives.push_back(box);
-    }
-    monitor.advance(items.boxes.size() * kReadWork + (counts.most_items() - items.boxes.size()) * kBuildWork);
+    std::vector<std::optional<Vec3>>().swap(placement.margins);
+    monitor.advance(items.size() * kReadWork + (counts.most_items() - items.size()) * kBuildWork);
     BvhOptions upper_options = bvh_options(options, mostly);
     upper_options.split_boxes = true;
     built.upper =
-        build_level(std::move(primitives), geometries, parts, {first_instance, items.parts}, upper_options, monitor);
+        build_level(std::move(primitives), geometries, parts, {first_instance, items}, upper_options, monitor);
     return monitor.poll() ? Status(cancelled_error()) : Status(Ok{});
 }
 

@@ -1,102 +1,149 @@
 // The binary tree that the builders make, before its nodes are gathered into wide ones.
 #pragma once
 
-#include <atomic>
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <deque>
 #include <mutex>
 #include <vector>
 
 #include "accel/bvh.h"
+#include "base/large_array.h"
 
 namespace steradian {
 
-/// There are more of these than of anything else while a hierarchy is built, so they are packed.
+/// There are more of these than of anything else while a hierarchy is built, so they are as small as can be: a box, as
+/// in BuildPrimitive, with a word in either fourth lane.
 struct alignas(16) BinaryNode {
-    // The box, as in BuildPrimitive.
     float lo[3];
-    uint32_t begin = 0;  ///< primitives [begin, end)
+    uint32_t first;  ///< the left child, or the first primitive of a leaf; and flags
     float hi[3];
-    uint32_t end = 0;
-    BinaryNode* child[2] = {};  ///< both or none
-    // gather() sets the costs, and once these have been decided by, the places.
-    struct Places {
-        uint32_t nodes, blocks, entries;  ///< that it takes to hold the subtree
-    };
-    union {
-        /// Least cost of the subtree in at most i + 1 of a wide node's children.
-        float cost[kWidth - 1];
-        Places places;
-    };
-    uint32_t depth : 7 = 0;
-    // The rest is set by gather().
-    uint32_t one_leaf : 1 = 0;  ///< cheaper as one leaf than in any other way
-    uint32_t one_kind : 1 = 1;
-    uint32_t first_kind : 2 = 0;  ///< the ItemKind of the first primitive
-    uint32_t shares : 3 * (kWidth - 1) = 0;
+    uint32_t second;  ///< the right child, or the end of the primitives
 
-    bool is_leaf() const { return child[0] == nullptr || one_leaf; }
+    static constexpr uint32_t kIndex = (1u << 29) - 1, kLeaf = 1u << 31, kKindShift = 29;
+    static constexpr uint32_t kLarge = 1u << 29, kUncounted = 1u << 30;
+
+    void set_leaf(size_t begin, size_t end, ItemKind kind) {
+        first = kLeaf | static_cast<uint32_t>(kind) << kKindShift | static_cast<uint32_t>(begin);
+        second = static_cast<uint32_t>(end);
+    }
+    /// `large`: worth more than one task. `counted`: a level of depth; splits by kind are not.
+    void set_children(uint32_t left, uint32_t right, bool large, bool counted) {
+        first = left | (large ? kLarge : 0) | (counted ? 0 : kUncounted);
+        second = right;
+    }
+    /// Everything else stays.
+    void set_child(int which, uint32_t child) {
+        if (which == 0)
+            first = (first & ~kIndex) | child;
+        else
+            second = child;
+    }
+    void count() { first &= ~kUncounted; }
+
+    bool is_leaf() const { return first & kLeaf; }
+    uint32_t child(int which) const { return which == 0 ? first & kIndex : second; }
+    bool large() const { return !is_leaf() && (first & kLarge); }
+    bool counted() const { return !(first & kUncounted); }
+    // Of a leaf.
+    uint32_t begin() const { return first & kIndex; }
+    uint32_t end() const { return second; }
+    ItemKind kind() const { return static_cast<ItemKind>(first >> kKindShift & 3); }
+
     Box4 box() const { return {Float4::load(lo).first_three(), Float4::load(hi).first_three()}; }
     void set_box(const Box4& b) {
-        const uint32_t first = begin, last = end;
+        const uint32_t f = first, s = second;
         b.lo.store(lo), b.hi.store(hi);
-        begin = first, end = last;
-    }
-    /// How many of `children` (at least 2) of a wide node the left side gets at the least cost; 0 when one child fewer
-    /// is as good. With kWidth children in a node of its own.
-    uint32_t left_share(uint32_t children) const { return shares >> 3 * (children - 2) & 7; }
-    void set_left_share(uint32_t children, uint32_t left) {
-        const uint32_t at = 3 * (children - 2);
-        shares = (shares & ~(7u << at)) | left << at;
+        first = f, second = s;
     }
 };
-static_assert(sizeof(BinaryNode) == 80 && kMaxBvhDepth < 128);
+static_assert(sizeof(BinaryNode) == 32);
 
-/// Nodes in chunks that never move. Every task has a Source of its own, so that workers meet only over whole chunks.
+/// Ranges of so many primitives are worth more than one task.
+inline constexpr size_t kLargeRange = 4096;
+/// Ranges of which both parts have as many primitives may be divided by two tasks, each with a source of its own: so
+/// there are not more of these than m / kOwnSourceGrain, and what their last runs waste is bounded (build_memory.h).
+inline constexpr size_t kOwnSourceGrain = 512;
+
+/// Nodes by index, in chunks that never move. Every task has a Source of its own, so that workers meet only over runs
+/// of nodes. The two children of a node begin where they share a line of the cache.
 class BinaryPool {
 public:
-    static constexpr size_t kChunk = 64;
+    static constexpr uint32_t kRun = 64, kChunkBits = 10, kChunk = 1u << kChunkBits;
+    /// There never are more, in a tree over so many primitives: nodes, and what the last runs of all sources waste.
+    static constexpr size_t most_nodes(size_t primitives) { return 4 * primitives + 4 * size_t(kRun); }
+
+    explicit BinaryPool(size_t primitives) : most_(most_nodes(primitives)), chunk_((most_ + kChunk - 1) / kChunk) {}
+
+    BinaryNode& operator[](uint32_t index) { return chunk_[index >> kChunkBits][index & (kChunk - 1)]; }
+    const BinaryNode& operator[](uint32_t index) const { return chunk_[index >> kChunkBits][index & (kChunk - 1)]; }
+    /// The same for a loop that should not look for the chunks each time.
+    class View {
+    public:
+        explicit View(const BinaryPool& pool) : chunk_(pool.chunk_.data()) {}
+        const BinaryNode& operator[](uint32_t index) const { return chunk_[index >> kChunkBits][index & (kChunk - 1)]; }
+
+    private:
+        const BinaryNode* const* chunk_;
+    };
+    /// All indices are below.
+    uint32_t size() const { return used_; }
 
     class Source {
     public:
         explicit Source(BinaryPool& pool) : pool_(pool) {}
-        BinaryNode* next() {
-            if (used_ == kChunk) chunk_ = pool_.grow(), used_ = 0;
-            return &chunk_[used_++];
+        /// The first of two.
+        uint32_t next_two() {
+            if (left_ == 0) next_ = pool_.take_run(), left_ = kRun;
+            left_ -= 2;
+            return (next_ += 2) - 2;
         }
 
     private:
         BinaryPool& pool_;
-        BinaryNode* chunk_ = nullptr;
-        size_t used_ = kChunk;
+        uint32_t next_ = 0, left_ = 0;
     };
 
 private:
-    BinaryNode* grow() {
+    uint32_t take_run() {
         const std::lock_guard lock(mutex_);
-        chunks_.push_back(std::make_unique<BinaryNode[]>(kChunk));
-        return chunks_.back().get();
+        const uint32_t run = used_;
+        if (run % kChunk == 0) {
+            memory_.emplace_back(std::min<size_t>(kChunk, most_ - run));
+            chunk_[run / kChunk] = memory_.back().data();
+        }
+        used_ += kRun;
+        return run;
     }
 
+    const size_t most_;
+    std::vector<BinaryNode*> chunk_;
+    std::deque<LargeArray<BinaryNode>> memory_;
     std::mutex mutex_;
-    std::vector<std::unique_ptr<BinaryNode[]>> chunks_;
+    uint32_t used_ = 0;
 };
 
-/// Ranges of which both parts have as many primitives may be divided by two tasks, each with a source of its own: so
-/// there are not more of these than m / kOwnSourceGrain, and what their last chunks waste is bounded (build_memory.h).
-inline constexpr size_t kOwnSourceGrain = 512;
+/// What the leaves of a tree refer to, first `own` and then `moved`: leaves with parts of split boxes have all of
+/// theirs there.
+struct LeafPrimitives {
+    LargeArray<BuildPrimitive>& own;
+    std::deque<BuildPrimitive> moved = {};
+
+    size_t size() const { return own.size() + moved.size(); }
+    const BuildPrimitive& operator[](size_t i) const { return i < own.size() ? own[i] : moved[i - own.size()]; }
+};
 
 /// What is to become a subtree: primitives [begin, end), under so many splits.
 struct Subtree {
     size_t begin = 0, end = 0;
     uint32_t depth = 0;
 };
-/// Divides by options.builder, which is sah or median, into `out`; see build_bvh, defined in bvh.cpp.
+/// Divides by options.builder, which is sah or median, into the node `out`; see build_bvh, defined in bvh.cpp.
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
-            BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, BinaryNode& out);
+            BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, uint32_t out);
 
-/// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp. The primitives are gone
-/// before most of `out` is there, where their boxes are not needed.
-void gather(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out);
+/// Gathers a binary tree over `count` primitives into `out`, which is unfinished when cancelled; defined in gather.cpp.
+/// The primitives are gone before most of `out` is there, where their boxes are not needed.
+void gather(const BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out);
 
 }  // namespace steradian

@@ -2,6 +2,7 @@
 // between.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "accel/binary_tree.h"
@@ -12,9 +13,9 @@ namespace steradian {
 /// the radix tree over the codes (Karras 2012, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d
 /// Trees"), and divides by the surface-area heuristic the treelets among themselves, as boxes (after Garanzha,
 /// Pantaleoni & McAllister 2011, "Simpler and Faster HLBVH with Work Queues"), and each of them. Nothing is moved along
-/// all the levels in between. Same promises as build_bvh; options.builder is not looked at. Without a root, and with
-/// nothing reordered, when options.max_depth is too small for that; without a root when cancelled.
-BinaryNode* build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
-                       BuildMonitor& monitor);
+/// all the levels in between. Same promises as build_bvh; options.builder is not looked at. The root; without one, and
+/// with nothing reordered, when options.max_depth is too small for that; without one when cancelled.
+std::optional<uint32_t> build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
+                                   BuildMonitor& monitor);
 
 }  // namespace steradian

@@ -4,7 +4,6 @@
 
 #include "accel/binary_tree.h"
 #include "accel/geometry.h"
-#include "accel/morton.h"
 #include "accel/open.h"
 #include "accel/reinsert.h"
 #include "accel/split_spatial.h"
@@ -27,36 +26,34 @@ struct LevelCounts {
 BuildMemory level_memory(const LevelCounts& counts, const AccelOptions& options) {
     const uint64_t n = counts.triangles + counts.others;
     if (n == 0) return {};
-    const bool high_quality = options.builder == BvhBuilder::high_quality;
-    // Only triangles are cut, but there is room for all.
-    const uint64_t room = high_quality && counts.split_boxes ? n / kPrimitivesPerCut : 0;
-    const uint64_t added = counts.triangles ? room : 0;
+    const bool high_quality = options.builder == BvhBuilder::high_quality, fast = options.builder == BvhBuilder::fast;
+    const bool compact = options.layout == BvhLayout::compact;
+    // Only triangles are cut.
+    const uint64_t added = high_quality && counts.split_boxes && counts.triangles ? n / kPrimitivesPerCut : 0;
     // In the worst case a leaf holds one primitive, and a node two leaves.
     const uint64_t m = n + added, triangles = counts.triangles + added;
     const uint64_t nodes = m + 1, binary_nodes = 2 * m;
-    const uint64_t boxes = n * sizeof(BuildPrimitive), more_boxes = (n + room) * sizeof(BuildPrimitive);
     const uint64_t entries = counts.others * sizeof(LeafEntry);
     const uint64_t ids = triangles * kBlock * sizeof(uint32_t) + counts.others * sizeof(uint32_t);
     const uint64_t wide = nodes * sizeof(WideNode), compact_nodes = nodes * sizeof(CompactNode);
     const uint64_t compact_blocks = triangles * kMaxUnitsPerTriangle * sizeof(uint64_t);
-    const bool compact = options.layout == BvhLayout::compact;
 
-    const uint64_t sources = 1 + m / kOwnSourceGrain + (options.builder == BvhBuilder::fast ? 2 + n / 64 : 0);
-    const uint64_t chunks = 1 + binary_nodes / BinaryPool::kChunk + sources;
-    const uint64_t pool =
-        chunks * (BinaryPool::kChunk * sizeof(BinaryNode) + kGrowing * sizeof(void*)) + n / 2;  // and bins
-    uint64_t dividing = boxes + pool;
-    // Sorted along the curve: the primitives, their treelets, where these begin, in both orders, and the leaves.
-    if (options.builder == BvhBuilder::fast)
-        dividing += n * (2 * sizeof(BuildPrimitive) + 2 * kGrowing * sizeof(uint32_t) + kGrowing * sizeof(void*));
-    // Making room; reinserting; and putting in order.
-    if (high_quality)
-        dividing = more_boxes + std::max({boxes, pool + binary_nodes * kReinsertionBytes, pool + more_boxes});
+    const uint64_t sources = 1 + m / kOwnSourceGrain + (fast ? 2 + n / 64 : 0);
+    const uint64_t slots =
+        std::min<uint64_t>(binary_nodes + sources * BinaryPool::kRun + BinaryPool::kChunk, BinaryPool::most_nodes(m));
+    const uint64_t pool = slots * sizeof(BinaryNode) +
+                          (1 + BinaryPool::most_nodes(m) / BinaryPool::kChunk) * 2 * sizeof(LargeArray<BinaryNode>);
+    // What is added is held by whoever divides, and then by the leaf, with all else that this leaf has.
+    const uint64_t boxes = (n + (added ? added + m : 0)) * sizeof(BuildPrimitive);
+    uint64_t dividing = boxes + pool + n / 2;  // and bins
+    // Sorted along the curve: digits, and treelets, where these begin, and the leaves over them.
+    if (fast) dividing += n * (1 + sizeof(BuildPrimitive) + kGrowing * (sizeof(uint32_t) + sizeof(uint64_t)));
+    if (high_quality) dividing += slots * kReinsertionBytes;
     BuildMemory out;
     out.result = (compact ? compact_nodes + compact_blocks + kPaddingUnits * sizeof(uint64_t)
                           : wide + triangles * sizeof(TriangleBlock)) +
                  entries;
-    const uint64_t gathering = more_boxes + m * sizeof(uint32_t) + pool + wide + ids;
+    const uint64_t gathering = boxes + m * sizeof(uint32_t) + pool + slots * sizeof(uint32_t) + wide + ids;
     const uint64_t packing = wide + ids + entries +
                              (compact ? compact_nodes + kGrowing * compact_blocks : triangles * sizeof(TriangleBlock));
     out.peak = std::max({dividing, gathering, packing});

@@ -15,8 +15,8 @@ struct BuildMemory {
 };
 
 /// What Accel::build takes at most for these, on any number of workers, whatever the coordinates are: there is room for
-/// a leaf for every triangle and a node for every leaf. With some thousand primitives or more the peak is within ten
-/// times what is really held, and the result within sixteen times (tests/accel/memory_test.cpp).
+/// a leaf for every triangle and a node for every leaf. With some thousand primitives or more that is two to twenty
+/// times what is really held (tests/accel/memory_test.cpp).
 BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                          const AccelOptions& options);
 

@@ -107,14 +107,14 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {
     return all;
 }
 
-std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                       ItemKind kind) {
-    const Binning binning(bounds, primitives.size());
+std::optional<SahSplit> find_sah_split(const Range& range, const RangeBounds& bounds, ItemKind kind) {
+    const Binning binning(bounds, range.size());
     const Area half_area_of(bounds);
     Bins bins(binning.count());
-    count_all(primitives, binning, bins);
+    count_all(range.own, binning, bins);
+    count_all(range.added, binning, bins);
     std::optional<SahSplit> best;
-    const uint32_t all = static_cast<uint32_t>(primitives.size());
+    const uint32_t all = static_cast<uint32_t>(range.size());
     for (int axis = 0; axis < 3; ++axis) {
         if (!binning.usable(axis)) continue;
         float right_cost[kBins];
@@ -141,23 +141,27 @@ std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitive
     return best;
 }
 
-Halves apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split) {
-    const Binning binning(bounds, primitives.size());
+Halves apply_sah_split(const Range& range, const RangeBounds& bounds, const SahSplit& split) {
+    const Binning binning(bounds, range.size());
     const auto on_left = [&](const BuildPrimitive& p) {
         const Float4 lo = Float4::load(p.lo).first_three(), hi = Float4::load(p.hi).first_three();
         alignas(16) uint32_t bin[4];
         binning.bins(lo + hi, bin);
         return bin[split.axis] < split.bin;
     };
+    RangeBounds left_bounds, right_bounds;
+    const auto divide = [&](std::span<BuildPrimitive> part) {
+        size_t left = 0, right = part.size();
+        while (true) {
+            for (; left < right && on_left(part[left]); ++left) left_bounds.extend(part[left]);
+            for (; left < right && !on_left(part[right - 1]); --right) right_bounds.extend(part[right - 1]);
+            if (left >= right) return left;
+            std::swap(part[left], part[right - 1]);
+        }
+    };
     Halves halves;
-    size_t left = 0, right = primitives.size();
-    while (true) {
-        for (; left < right && on_left(primitives[left]); ++left) halves.bounds[0].extend(primitives[left]);
-        for (; left < right && !on_left(primitives[right - 1]); --right) halves.bounds[1].extend(primitives[right - 1]);
-        if (left >= right) break;
-        std::swap(primitives[left], primitives[right - 1]);
-    }
-    halves.left = left;
+    for (const int i : {0, 1}) (i ? halves.added : halves.own) = divide(i ? range.added : range.own);
+    halves.bounds[0] = left_bounds, halves.bounds[1] = right_bounds;
     return halves;
 }
 

@@ -42,6 +42,7 @@ struct BvhOptions {
     uint32_t max_depth = kMaxBvhDepth;
     ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
     uint64_t work = kDivideWork;        ///< to report for a primitive once it is in a leaf
+    uint32_t max_leaf = 8;     ///< primitives of a leaf that was not forced; overlapping boxes do not stay alone
     bool split_boxes = false;  ///< BvhBuilder::high_quality may; not where rays are transformed, see SpatialSplit
     BvhLayout layout = BvhLayout::full;  ///< what is to be made of the hierarchy; it limits how much may be added
 };

@@ -3,7 +3,7 @@
 // Through Compressed Wide BVHs", section 3.1). Passes over the tree decide, count, and fill exact places, all of them
 // by several workers.
 #include <algorithm>
-#include <array>
+#include <memory>
 
 #include "accel/binary_tree.h"
 #include "accel/children.h"
@@ -12,84 +12,102 @@
 namespace steradian {
 namespace {
 
-constexpr uint32_t kTaskGrain = 4096;  ///< primitives
-/// No larger leaves are made of smaller ones.
+constexpr size_t kIdGrain = 4096;
+/// No larger leaves are made of smaller ones, and none that a single reference could not lead to.
 constexpr uint32_t kMaxMergedLeaf = 8;
 
+/// What is decided of an inner node.
+class Choice {
+public:
+    Choice() = default;
+    Choice(bool one_leaf, ItemKind kind) : bits_(uint32_t(one_leaf) | static_cast<uint32_t>(kind) << 1) {}
+    bool one_leaf() const { return bits_ & 1; }  ///< cheaper as one leaf than in any other way
+    ItemKind kind() const { return static_cast<ItemKind>(bits_ >> 1 & 3); }  ///< of its first primitive
+    /// How many of `children` (at least 2) of a wide node the left side gets at the least cost; 0 when one child fewer
+    /// is as good. With kWidth children in a node of its own.
+    uint32_t left_share(uint32_t children) const { return bits_ >> at(children) & 7; }
+    void set_left_share(uint32_t children, uint32_t left) { bits_ |= left << at(children); }
+
+private:
+    static uint32_t at(uint32_t children) { return 3 * (children - 1); }
+    uint32_t bits_;
+};
+
 struct Children {
-    BinaryNode* node[kWidth];
+    uint32_t node[kWidth], depth[kWidth];
     uint32_t count = 0;
 };
 
-/// Adds what represents `node` in at most `share` children.
-void add_children(BinaryNode& node, uint32_t share, Children& out) {
-    while (share > 1 && !node.is_leaf() && node.left_share(share) == 0) --share;
-    if (share == 1 || node.is_leaf()) {
-        out.node[out.count++] = &node;
-        return;
-    }
-    const uint32_t left = node.left_share(share);
-    add_children(*node.child[0], left, out);
-    add_children(*node.child[1], share - left, out);
-}
+/// Where things go that are yet to be written.
+struct Places {
+    uint32_t node = 0, block = 0, entry = 0;
+};
 
-/// Of the wide node that stands for `parent`; none when that is a leaf.
-Children children_of(const BinaryNode& parent) {
-    Children c;
-    if (parent.is_leaf()) return c;
-    const uint32_t left = parent.left_share(kWidth);
-    add_children(*parent.child[0], left, c);
-    add_children(*parent.child[1], kWidth - left, c);
-    return c;
-}
+struct Totals {
+    uint32_t nodes = 0, blocks = 0, entries = 0, depth = 0;
+    uint32_t runs = 0;  ///< nodes over the runs of a leaf
+    uint64_t leaves = 0;
+
+    void add(const Totals& t) {
+        nodes += t.nodes, blocks += t.blocks, entries += t.entries, runs += t.runs, leaves += t.leaves;
+        depth = std::max(depth, t.depth);
+    }
+};
+
+/// What is below the children of a wide node that several workers fill; of smaller ones it need not be known.
+struct Plan {
+    Totals child[kWidth];
+    std::unique_ptr<Plan> below[kWidth];
+};
 
 class Gatherer {
 public:
-    Gatherer(LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out)
-        : primitives_(primitives), monitor_(monitor), out_(out) {}
+    Gatherer(const BinaryPool& pool, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out)
+        : pool_(pool), primitives_(primitives), monitor_(monitor), out_(out) {}
 
-    void run(BinaryNode& root) {
-        out_.bounds = root.box().box();
+    void run(uint32_t root) {
+        out_.bounds = pool_[root].box().box();
         const Vec3 size = out_.bounds.hi - out_.bounds.lo;
         const float scale = 1 / max_component(size);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
-        decide(root);
-        monitor_.advance(primitives_.size());
+        // What was moved is reported with what it was moved from.
+        const uint64_t work = primitives_.own.size();
+        choice_.resize(pool_.size());
+        float cost[kWidth - 1];
+        decide(root, cost);
+        monitor_.advance(work);
         if (monitor_.poll()) return;
-        const Totals totals = count(root);
+        std::unique_ptr<Plan> plan;
+        const Totals totals = count(root, 0, plan);
         if (monitor_.poll()) return;
-        const uint64_t work = (kGatherWork - 1) * primitives_.size();
         take_ids(totals.runs > 0);
         out_.nodes.resize(totals.nodes);
         out_.blocks.resize(size_t(totals.blocks) * kBlock);
         out_.entries.resize(totals.entries);
         out_.leaves = totals.leaves, out_.depth = totals.depth;
-        fill(root, {0, 0, 0});
-        monitor_.advance(work);
+        Places at;
+        fill(root, at, plan.get());
+        monitor_.advance((kGatherWork - 1) * work);
     }
 
 private:
-    struct Totals {
-        uint32_t nodes = 0, blocks = 0, entries = 0, depth = 0;
-        uint32_t runs = 0;  ///< nodes over the runs of a leaf
-        uint64_t leaves = 0;
-
-        void add(const Totals& t) {
-            nodes += t.nodes, blocks += t.blocks, entries += t.entries, runs += t.runs, leaves += t.leaves;
-            depth = std::max(depth, t.depth);
-        }
+    /// Of a subtree.
+    struct Decided {
+        uint32_t primitives;
+        ItemKind kind;  ///< of the first primitive
+        bool one_kind;
     };
 
-    /// Where things go that are yet to be written.
-    struct Places {
-        uint32_t node, block, entry;
-    };
-
-    static ItemKind kind_of(const BinaryNode& leaf) { return static_cast<ItemKind>(leaf.first_kind); }
+    bool is_leaf(uint32_t node) const { return pool_[node].is_leaf() || choice_[node].one_leaf(); }
+    ItemKind kind_of(uint32_t leaf) const { return pool_[leaf].is_leaf() ? pool_[leaf].kind() : choice_[leaf].kind(); }
     static uint32_t item_size(ItemKind kind) { return kind == ItemKind::block ? kBlock : 1; }
-    static uint32_t items_of(const BinaryNode& leaf) {
-        const uint32_t size = item_size(kind_of(leaf));
-        return (leaf.end - leaf.begin + size - 1) / size;
+    uint32_t primitives_below(uint32_t node) const {
+        const BinaryNode& n = pool_[node];
+        return n.is_leaf() ? n.end() - n.begin() : primitives_below(n.child(0)) + primitives_below(n.child(1));
+    }
+    static uint32_t items_for(ItemKind kind, uint32_t primitives) {
+        const uint32_t size = item_size(kind);
+        return (primitives + size - 1) / size;
     }
     /// Nodes that it takes to gather a leaf's items, kMaxRun to a run and kWidth runs or nodes to a node.
     static uint32_t nodes_for(uint32_t items) {
@@ -106,126 +124,165 @@ private:
         return share;
     }
 
-    /// Costs are surfaces (in units of the root's largest extent) times visits of nodes and tests of items.
-    void decide(BinaryNode& node) {
+    /// Costs are surfaces (in units of the root's largest extent) times visits of nodes and tests of items; cost[i] is
+    /// the least one of the subtree in at most i + 1 of a wide node's children.
+    Decided decide(uint32_t index, float cost[kWidth - 1]) {
+        const BinaryNode& node = pool_[index];
         const Box4 box = node.box();
         const float area = half_area((box.hi - box.lo) * scale_);
-        const uint32_t primitives = node.end - node.begin;
-        node.first_kind = static_cast<uint32_t>(primitives_[node.begin].kind) & 3;
-        const float as_leaf = area * leaf_cost(kind_of(node), primitives);
         if (node.is_leaf()) {
-            std::fill_n(node.cost, kWidth - 1, as_leaf);
-            return;
+            const uint32_t primitives = node.end() - node.begin();
+            std::fill_n(cost, kWidth - 1, area * leaf_cost(node.kind(), primitives));
+            return {primitives, node.kind(), true};
         }
-        BinaryNode &l = *node.child[0], &r = *node.child[1];
-        if (primitives >= kTaskGrain) {
-            parallel_invoke([&] { decide(l); }, [&] { decide(r); });
+        float left_cost[kWidth - 1], right_cost[kWidth - 1];
+        Decided l, r;
+        if (node.large()) {
+            parallel_invoke([&] { l = decide(node.child(0), left_cost); },
+                            [&] { r = decide(node.child(1), right_cost); });
         } else {
-            decide(l), decide(r);
+            l = decide(node.child(0), left_cost), r = decide(node.child(1), right_cost);
         }
-        node.one_kind = l.one_kind && r.one_kind && kind_of(l) == kind_of(r);
+        const Decided both{l.primitives + r.primitives, l.kind, l.one_kind && r.one_kind && l.kind == r.kind};
         float best[kWidth + 1];
+        uint32_t best_left[kWidth + 1] = {};
         for (uint32_t share = 2; share <= kWidth; ++share) {
             best[share] = kInfinity;
             for (uint32_t left = 1; left < share; ++left) {
-                const float cost = l.cost[left - 1] + r.cost[share - left - 1];
-                if (cost < best[share]) best[share] = cost, node.set_left_share(share, left);
+                const float sum = left_cost[left - 1] + right_cost[share - left - 1];
+                if (sum < best[share]) best[share] = sum, best_left[share] = left;
             }
         }
-        const float as_node = area + best[kWidth];
-        node.one_leaf = node.one_kind && primitives <= kMaxMergedLeaf && as_leaf <= as_node;
-        node.cost[0] = node.one_leaf ? as_leaf : as_node;
+        const float as_leaf = area * leaf_cost(l.kind, both.primitives), as_node = area + best[kWidth];
+        const bool one_leaf = both.one_kind && both.primitives <= kMaxMergedLeaf &&
+                              items_for(l.kind, both.primitives) <= ChildRef::kMaxRun && as_leaf <= as_node;
+        Choice choice(one_leaf, l.kind);
+        choice.set_left_share(kWidth, best_left[kWidth]);
+        cost[0] = one_leaf ? as_leaf : as_node;
         for (uint32_t share = 2; share < kWidth; ++share) {
-            node.cost[share - 1] = best[share];
-            if (best[share] < node.cost[share - 2]) continue;
-            node.cost[share - 1] = node.cost[share - 2], node.set_left_share(share, 0);
+            const bool gains = best[share] < cost[share - 2];
+            cost[share - 1] = gains ? best[share] : cost[share - 2];
+            if (gains) choice.set_left_share(share, best_left[share]);
         }
+        choice_[index] = choice;
+        return both;
     }
 
-    /// Of everything below, when `root` becomes a wide node.
-    Totals count(BinaryNode& root) {
+    /// Adds what represents `node`, under so many splits, in at most `share` children.
+    void add_children(uint32_t node, uint32_t depth, uint32_t share, Children& out) const {
+        if (share > 1 && !is_leaf(node)) {
+            while (share > 1 && choice_[node].left_share(share) == 0) --share;
+            if (share > 1) return divide_share(node, depth, share, out);
+        }
+        out.node[out.count] = node, out.depth[out.count++] = depth;
+    }
+    void divide_share(uint32_t node, uint32_t depth, uint32_t share, Children& out) const {
+        const uint32_t left = choice_[node].left_share(share), below = depth + (pool_[node].counted() ? 1 : 0);
+        add_children(pool_[node].child(0), below, left, out);
+        add_children(pool_[node].child(1), below, share - left, out);
+    }
+
+    /// Of the wide node that stands for `parent`: a leaf, which only the root may be, is its own child.
+    Children children_of(uint32_t parent, uint32_t depth) const {
+        Children c;
+        if (is_leaf(parent))
+            add_children(parent, depth, 1, c);
+        else
+            divide_share(parent, depth, kWidth, c);
+        return c;
+    }
+
+    /// Of everything below, when `root` becomes a wide node under so many splits.
+    Totals count(uint32_t root, uint32_t depth, std::unique_ptr<Plan>& plan) const {
         Totals totals;
         totals.nodes = 1;
-        if (root.is_leaf()) {
-            totals.add(count_leaf(root));
-            return totals;
-        }
-        const Children children = children_of(root);
+        const Children children = children_of(root, depth);
+        if (pool_[root].large()) plan = std::make_unique<Plan>();
         Totals parts[kWidth];
-        each(root, children, [&](uint32_t i) {
-            BinaryNode& child = *children.node[i];
-            parts[i] = child.is_leaf() ? count_leaf(child) : count(child);
-            child.places = {parts[i].nodes, parts[i].blocks, parts[i].entries};
+        each(plan != nullptr, children, [&](uint32_t i) {
+            const uint32_t child = children.node[i];
+            std::unique_ptr<Plan> none;
+            parts[i] = is_leaf(child) ? count_leaf(child, children.depth[i])
+                                      : count(child, children.depth[i], plan ? plan->below[i] : none);
         });
         for (uint32_t i = 0; i < children.count; ++i) totals.add(parts[i]);
+        if (plan) std::copy_n(parts, children.count, plan->child);
         return totals;
     }
-    static Totals count_leaf(const BinaryNode& leaf) {
-        const uint32_t items = items_of(leaf), nodes = nodes_for(items);
+    Totals count_leaf(uint32_t leaf, uint32_t depth) const {
+        const uint32_t items = items_for(kind_of(leaf), primitives_below(leaf)), nodes = nodes_for(items);
         const bool blocks = kind_of(leaf) == ItemKind::block;
-        return {nodes, blocks ? items : 0, blocks ? 0 : items, leaf.depth, nodes, 1};
+        return {nodes, blocks ? items : 0, blocks ? 0 : items, depth, nodes, 1};
     }
 
     /// Of the primitives only their ids are needed from now on, and boxes where there are nodes over runs.
     void take_ids(bool boxes_too) {
+        const size_t own = primitives_.own.size();
         ids_.resize(primitives_.size());
-        parallel_for(ids_.size(), kTaskGrain, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i) ids_[i] = primitives_[i].id;
+        parallel_for(own, kIdGrain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) ids_[i] = primitives_.own[i].id;
         });
-        if (!boxes_too) LargeArray<BuildPrimitive>().swap(primitives_);
+        for (size_t i = own; i < ids_.size(); ++i) ids_[i] = primitives_[i].id;
+        if (boxes_too) return;
+        LargeArray<BuildPrimitive>().swap(primitives_.own);
+        std::deque<BuildPrimitive>().swap(primitives_.moved);
     }
 
     /// body(i) for every child, by several workers where that pays.
     template <class Body>
-    static void each(const BinaryNode& parent, const Children& children, const Body& body) {
-        if (parent.end - parent.begin < kTaskGrain) {
-            for (uint32_t i = 0; i < children.count; ++i) body(i);
-        } else {
+    static void each(bool by_several, const Children& children, const Body& body) {
+        if (by_several)
             parallel_for(children.count, 1, [&](size_t i, size_t) { body(static_cast<uint32_t>(i)); });
-        }
+        else
+            for (uint32_t i = 0; i < children.count; ++i) body(i);
     }
 
     /// Writes `root` as the wide node at `at.node`, what is below it behind that, and its items from the other places
-    /// on.
-    void fill(const BinaryNode& root, Places at) {
-        Children children = children_of(root);
-        if (root.is_leaf()) children.node[0] = const_cast<BinaryNode*>(&root), children.count = 1;
-        Places places[kWidth];
-        ++at.node;
-        const uint32_t own = at.node - 1;
-        // Leaves first, so that the items of one node's leaves lie together.
-        for (const bool leaves : {true, false})
-            for (uint32_t i = 0; i < children.count; ++i) {
-                const BinaryNode& child = *children.node[i];
-                if (child.is_leaf() != leaves) continue;
-                places[i] = at;
-                at.node += child.places.nodes, at.block += child.places.blocks, at.entry += child.places.entries;
-            }
-        if (root.end - root.begin >= kTaskGrain && monitor_.poll()) return;
+    /// on; these move on to what is behind all of it.
+    void fill(uint32_t root, Places& at, const Plan* plan) {
+        const Children children = children_of(root, 0);
+        const uint32_t own = at.node++;
         WideNode node = empty_node();
-        each(root, children, [&](uint32_t i) {
-            const BinaryNode& child = *children.node[i];
-            set_child_box(node, i, child.box().box());
-            if (child.is_leaf()) {
-                node.child[i] = fill_leaf(child, places[i]);
-            } else {
-                node.child[i] = ChildRef::node(places[i].node);
-                fill(child, places[i]);
+        // Leaves first, so that the items of one node's leaves lie together.
+        for (uint32_t i = 0; i < children.count; ++i)
+            if (is_leaf(children.node[i])) node.child[i] = fill_leaf(children.node[i], at);
+        Places places[kWidth];
+        for (uint32_t i = 0; i < children.count; ++i) {
+            set_child_box(node, i, pool_[children.node[i]].box().box());
+            if (is_leaf(children.node[i])) continue;
+            if (!plan) {
+                node.child[i] = ChildRef::node(at.node);
+                fill(children.node[i], at, nullptr);
+                continue;
             }
-        });
+            const Totals& below = plan->child[i];
+            places[i] = at;
+            node.child[i] = ChildRef::node(at.node);
+            at.node += below.nodes, at.block += below.blocks, at.entry += below.entries;
+        }
         set_child_order(node, children.count);
         out_.nodes[own] = node;
+        if (!plan || monitor_.poll()) return;
+        each(true, children, [&](uint32_t i) {
+            if (!is_leaf(children.node[i])) fill(children.node[i], places[i], plan->below[i].get());
+        });
     }
 
-    uint32_t fill_leaf(const BinaryNode& leaf, Places at) {
+    uint32_t* put_ids(uint32_t node, uint32_t* to) const {
+        const BinaryNode& n = pool_[node];
+        if (n.is_leaf()) return std::copy(ids_.begin() + n.begin(), ids_.begin() + n.end(), to);
+        return put_ids(n.child(1), put_ids(n.child(0), to));
+    }
+    /// A leaf that was merged is never more than a run.
+    uint32_t fill_leaf(uint32_t leaf, Places& at) {
         const ItemKind kind = kind_of(leaf);
-        const uint32_t size = item_size(kind), items = items_of(leaf);
-        const uint32_t first = kind == ItemKind::block ? at.block : at.entry;
-        uint32_t* const begin = (kind == ItemKind::block ? out_.blocks : out_.entries).data() + size_t(first) * size;
-        uint32_t* to = begin;
-        for (uint32_t i = leaf.begin; i < leaf.end; ++i) *to++ = ids_[i];
-        std::fill(to, begin + size_t(items) * size, kNoHit);
-        return gather_items(leaf.begin, leaf.end, kind, first, items, at.node);
+        uint32_t& next = kind == ItemKind::block ? at.block : at.entry;
+        const uint32_t first = next, size = item_size(kind), items = items_for(kind, primitives_below(leaf));
+        uint32_t* const to = (kind == ItemKind::block ? out_.blocks : out_.entries).data() + size_t(first) * size;
+        std::fill(put_ids(leaf, to), to + size_t(items) * size, kNoHit);
+        next += items;
+        if (items <= ChildRef::kMaxRun) return ChildRef::leaf(kind, first, items);
+        return gather_items(pool_[leaf].begin(), pool_[leaf].end(), kind, first, items, at.node);
     }
 
     /// A run of items, or a node over several runs, at `place` and behind it; which moves on.
@@ -236,12 +293,17 @@ private:
         uint32_t children = 0;
         for (uint32_t first = 0; first < items; first += share, ++children) {
             const uint32_t b = begin + first * size, e = std::min(end, b + share * size);
-            set_child_box(node, children, range_bounds(std::span(primitives_).subspan(b, e - b)).box.box());
+            set_child_box(node, children, bounds_of(b, e));
             node.child[children] = gather_items(b, e, kind, item + first, std::min(share, items - first), place);
         }
         set_child_order(node, children);
         out_.nodes[own] = node;
         return ChildRef::node(own);
+    }
+    Box bounds_of(uint32_t begin, uint32_t end) const {
+        RangeBounds bounds;
+        for (uint32_t i = begin; i < end; ++i) bounds.extend(primitives_[i]);
+        return bounds.box.box();
     }
 
     static WideNode empty_node() {
@@ -254,7 +316,9 @@ private:
         return node;
     }
 
-    LargeArray<BuildPrimitive>& primitives_;
+    const BinaryPool& pool_;
+    LeafPrimitives& primitives_;
+    LargeArray<Choice> choice_;  ///< by node
     LargeArray<uint32_t> ids_;
     BuildMonitor& monitor_;
     Float4 scale_;
@@ -263,8 +327,8 @@ private:
 
 }  // namespace
 
-void gather(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, BuildMonitor& monitor, Bvh& out) {
-    Gatherer(primitives, monitor, out).run(root);
+void gather(const BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out) {
+    Gatherer(pool, primitives, monitor, out).run(root);
 }
 
 }  // namespace steradian

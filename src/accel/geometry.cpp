@@ -220,7 +220,7 @@ Result<Box> checked_bounds(const Geometry& geometry, size_t geometry_index) {
 }
 
 Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
-                  std::span<const LevelPart> parts, const InstanceParts& instances, const BvhOptions& options,
+                  std::span<const LevelPart> parts, const InstanceIds& instances, const BvhOptions& options,
                   BuildMonitor& monitor) {
     const uint64_t work = primitives.size() * kPackWork;
     Bvh bvh = build_bvh(primitives, options, monitor);
@@ -241,7 +241,7 @@ CompactLevel repack_level(const Level& level, std::span<const Geometry> geometri
 }
 
 Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                 const InstanceParts& instances) {
+                 const InstanceIds& instances) {
     Level level;
     level.bounds = bvh.bounds, level.leaves = bvh.leaves, level.depth = bvh.depth;
     level.blocks = blocks_of(bvh.blocks);

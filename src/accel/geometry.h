@@ -58,7 +58,7 @@ void place_vertices(std::span<TriangleBlock> blocks, std::span<const Geometry> g
                     std::span<const LevelPart> parts);
 
 /// What the ids of instances and parts of them mean, which count from `first`.
-struct InstanceParts {
+struct InstanceIds {
     uint32_t first = kNoHit;
     std::span<const InstancePart> parts;
 };
@@ -66,7 +66,7 @@ struct InstanceParts {
 /// `parts` are ascending and say whose the ids of blocks and shapes are. Unfinished when cancelled. Takes the
 /// primitives.
 Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
-                  std::span<const LevelPart> parts, const InstanceParts& instances, const BvhOptions& options,
+                  std::span<const LevelPart> parts, const InstanceIds& instances, const BvhOptions& options,
                   BuildMonitor& monitor);
 
 /// The part of a refit that may fail, and changes nothing: in the compact layout, where vertices that move take another
@@ -88,7 +88,7 @@ std::vector<double> costs_below(const Level& level);
 
 /// The rest of build_level, in the full layout: what the leaves of a hierarchy hold. An id may be in several of them.
 Level fill_level(Bvh bvh, std::span<const Geometry> geometries, std::span<const LevelPart> parts,
-                 const InstanceParts& instances);
+                 const InstanceIds& instances);
 
 ShapesView shapes_of(const Geometry& geometry);
 

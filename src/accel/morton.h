@@ -1,22 +1,54 @@
 // Primitives in the order of a space-filling curve: near each other in the list is near each other in space.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "accel/split.h"
-#include "base/large_array.h"
 
 namespace steradian {
 
-struct MortonKey {
-    uint64_t code;   ///< 21 bits of each axis of the centroid, interleaved: x is the highest of each three
-    uint32_t index;  ///< of the primitive
+/// Cells of the same size along all axes: a flat scene is cut along its length first. In double, where neither the
+/// smallest extent nor the largest leaves the range.
+class MortonGrid {
+public:
+    static constexpr uint32_t kAxisBits = 21;
+
+    explicit MortonGrid(const RangeBounds& bounds);
+    /// Of a primitive within the bounds: 21 bits of each axis of the centroid, interleaved; x is the highest of each
+    /// three.
+    uint64_t code(const BuildPrimitive& p) const {
+        uint64_t code = 0;
+        for (int axis = 0; axis < 3; ++axis) code = code << 1 | spread(cell(p.centroid(axis) - lo_[axis]));
+        return code;
+    }
+
+private:
+    uint32_t cell(double from_lo) const {
+        return std::min(static_cast<uint32_t>(from_lo * scale_), (1u << kAxisBits) - 1);
+    }
+    /// Two zeros before every bit of a number of 21 bits.
+    static uint64_t spread(uint32_t x) {
+        uint64_t v = x;
+        v = (v | v << 32) & 0x1f00000000ffff;
+        v = (v | v << 16) & 0x1f0000ff0000ff;
+        v = (v | v << 8) & 0x100f00f00f00f00f;
+        v = (v | v << 4) & 0x10c30c30c30c30c3;
+        v = (v | v << 2) & 0x1249249249249249;
+        return v;
+    }
+
+    Vec3d lo_;
+    double scale_;
 };
 
-/// By (code, index), whatever the coordinates: primitives that the grid of 2^21 cells along the largest extent cannot
-/// tell apart stay in the order in which they came. `bounds` are those of the span. Uses all workers of the caller's
-/// arena; the result does not depend on their number. Throws std::bad_alloc.
-LargeArray<MortonKey> morton_order(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds);
+/// Brings primitives nearly into the order of their codes, and says where the runs of up to `most` of them begin that
+/// are the largest subtrees of the radix tree over the codes which fit (codes that are all the same are cut by place):
+/// in ascending order, and where the last one ends. Between these runs the order is that of the codes. In place: beside
+/// the primitives there is a byte for each of them. Uses all workers of the caller's arena; the result does not depend
+/// on their number. Throws std::bad_alloc.
+std::vector<uint32_t> sort_along_curve(std::span<BuildPrimitive> primitives, const MortonGrid& grid, uint32_t most);
 
 }  // namespace steradian

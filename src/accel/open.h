@@ -14,12 +14,6 @@
 
 namespace steradian {
 
-/// What stands for instances on the upper level: parts, and their boxes, whose ids are the places in both lists.
-struct InstanceItems {
-    std::vector<InstancePart> parts;
-    std::vector<BuildPrimitive> boxes;
-};
-
 /// What hierarchies are built over, known from numbers alone.
 struct ItemCounts {
     uint64_t in_place = 0;   ///< primitives on the upper level
@@ -32,10 +26,15 @@ struct ItemCounts {
 ItemCounts count_items(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                        const std::vector<bool>& on_upper_level, const AccelOptions& options);
 
-InstanceItems whole_instances(const Placement& placement);
+/// What stands for instances on the upper level.
+using InstanceParts = std::vector<InstancePart>;
+InstanceParts whole_instances(const Placement& placement);
 /// Replaces the largest parts by the children of their nodes, for as long as there are no more than `limit`.
-InstanceItems open_instances(InstanceItems items, const Placement& placement, std::span<const Level> levels,
+InstanceParts open_instances(const InstanceParts& whole, const Placement& placement, std::span<const Level> levels,
                              uint64_t limit);
+/// Appends their boxes, with ids from `first_id` on.
+void append_boxes(const InstanceParts& parts, const Placement& placement, std::span<const Level> levels,
+                  uint32_t first_id, LargeArray<BuildPrimitive>& out);
 
 /// What rays through a box cost on average, in visits of nodes, by tracing some.
 double sampled_cost(const World& world, const Kernels& kernels, const Box& box);

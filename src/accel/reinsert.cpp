@@ -13,7 +13,7 @@
 namespace steradian {
 namespace {
 
-constexpr uint32_t kNone = ~0u, kRoot = 0, kLeafBit = 1u << 31;
+constexpr uint32_t kNone = ~0u;
 /// What a fifth one would gain is not worth its time.
 constexpr int kPasses = 4;
 /// Nodes looked at between questions about cancellation.
@@ -21,22 +21,7 @@ constexpr size_t kGrain = 256;
 
 struct Move {
     float gain = 0;
-    uint32_t node = 0, target = 0;
-};
-
-struct alignas(16) FlatNode {
-    float lo[3];
-    uint32_t left;  ///< or the first primitive of a leaf, with kLeafBit
-    float hi[3];
-    uint32_t right;  ///< or the end of the primitives
-
-    bool is_leaf() const { return left & kLeafBit; }
-    Box4 box() const { return {Float4::load(lo).first_three(), Float4::load(hi).first_three()}; }
-    void set_box(const Box4& b) {
-        const uint32_t l = left, r = right;
-        b.lo.store(lo), b.hi.store(hi);
-        left = l, right = r;
-    }
+    uint32_t rank = 0, target = 0;  ///< of the node, and the node itself
 };
 
 Box4 join(const Box4& a, const Box4& b) {
@@ -45,25 +30,30 @@ Box4 join(const Box4& a, const Box4& b) {
     return both;
 }
 
-static_assert(kReinsertionBytes ==
-              sizeof(FlatNode) + sizeof(BinaryNode*) + sizeof(uint32_t) + sizeof(uint8_t) + sizeof(Move));
+static_assert(kReinsertionBytes == 2 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(Move));
 
 class Tree {
 public:
-    Tree(BinaryNode& root, uint32_t max_depth) : max_depth_(max_depth) {
-        const Box bounds = root.box().box();
+    Tree(BinaryPool& nodes, uint32_t root, uint32_t max_depth)
+        : nodes_(nodes), root_(root), max_depth_(max_depth), parent_(nodes.size()), height_(nodes.size()) {
+        const Box bounds = nodes_[root].box().box();
         const float scale = 1 / max_component(bounds.hi - bounds.lo);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
-        const size_t nodes = count(root);
-        nodes_.reserve(nodes), origin_.reserve(nodes), parent_.reserve(nodes), height_.reserve(nodes);
+        order_.reserve(count(root));
         append(root, kNone);
+        // From now on all splits count: they may become others.
+        if (has_room())
+            for (const uint32_t node : order_)
+                if (!nodes_[node].is_leaf()) nodes_[node].count();
     }
     /// False for a tree with all the levels that it may have.
-    bool has_room() const { return height_[kRoot] < max_depth_; }
-    size_t size() const { return nodes_.size(); }
-    /// Where `node` would best go; the gain is 0 where it is best off already.
-    Move best_move(uint32_t node) const {
-        Move best{0, node, kNone};
+    bool has_room() const { return height_[root_] < max_depth_; }
+    size_t size() const { return order_.size(); }
+    /// Where the node of that rank, in the order from the root down, would best go; the gain is 0 where it is best off
+    /// already.
+    Move best_move(uint32_t rank) const {
+        const uint32_t node = order_[rank];
+        Move best{0, rank, kNone};
         if (!movable(node)) return best;
         const Box4 box = nodes_[node].box();
         const float own = area(box);
@@ -72,22 +62,24 @@ public:
         Box4 shrunken = nodes_[sibling(node)].box();
         float gain = area(parent);
         search(sibling(node), box, own, gain, best);
-        for (uint32_t child = parent; child != kRoot; child = parent_[child]) {
-            const uint32_t beside = sibling(child), above = parent_[child];
+        for (uint32_t child = parent; child != root_;) {
+            const uint32_t above = parent_[child];
+            const BinaryNode& ancestor = nodes_[above];
+            const uint32_t beside = ancestor.child(0) == child ? ancestor.child(1) : ancestor.child(0);
             // Beside all that is left of this ancestor.
             if (child != parent) consider(child, gain - area(child), best);
             if (gain - own > best.gain) search(beside, box, own, gain, best);
-            const Box4 before = shrunken;
-            shrunken = join(before, nodes_[beside].box());
-            gain += area(above) - area(shrunken);
+            shrunken.extend(nodes_[beside].box());
+            gain += area(ancestor.box()) - area(shrunken);
+            child = above;
         }
         return best;
     }
 
     /// Makes a move if it still is possible and still gains something.
     void apply(const Move& move) {
-        const uint32_t node = move.node, target = move.target;
-        if (!movable(node) || target == parent_[node] || target == sibling(node) || target == kRoot) return;
+        const uint32_t node = order_[move.rank], target = move.target;
+        if (!movable(node) || target == parent_[node] || target == sibling(node) || target == root_) return;
         for (uint32_t above = target; above != kNone; above = parent_[above])
             if (above == node) return;
         const uint32_t back = sibling(node);
@@ -101,51 +93,35 @@ public:
         attach(node, back);
     }
 
-    /// Back into the nodes that it is from, whose leaves keep their primitives: see put_in_order.
-    void store() const { store(kRoot, 0); }
-
 private:
     float area(const Box4& box) const { return half_area((box.hi - box.lo) * scale_); }
     float area(uint32_t node) const { return area(nodes_[node].box()); }
     /// The root has nowhere to go; without one of its children it would have only one.
-    bool movable(uint32_t node) const { return node != kRoot && parent_[node] != kRoot; }
+    bool movable(uint32_t node) const { return node != root_ && parent_[node] != root_; }
 
-    static size_t count(const BinaryNode& from) {
-        return from.is_leaf() ? 1 : 1 + count(*from.child[0]) + count(*from.child[1]);
+    size_t count(uint32_t node) const {
+        const BinaryNode& n = nodes_[node];
+        return n.is_leaf() ? 1 : 1 + count(n.child(0)) + count(n.child(1));
     }
-    uint32_t append(BinaryNode& from, uint32_t parent) {
-        const auto index = static_cast<uint32_t>(nodes_.size());
-        nodes_.emplace_back();
-        origin_.push_back(&from);
-        parent_.push_back(parent);
-        height_.push_back(0);
-        uint32_t left = from.begin | kLeafBit, right = from.end;
-        if (!from.is_leaf()) {
-            left = append(*from.child[0], index);
-            right = append(*from.child[1], index);
-            height_[index] = static_cast<uint8_t>(1 + std::max(height_[left], height_[right]));
-        }
-        nodes_[index].left = left, nodes_[index].right = right;
-        nodes_[index].set_box(from.box());
-        return index;
+    void append(uint32_t node, uint32_t parent) {
+        order_.push_back(node);
+        parent_[node] = parent, height_[node] = 0;
+        const BinaryNode& n = nodes_[node];
+        if (n.is_leaf()) return;
+        append(n.child(0), node), append(n.child(1), node);
+        set_height(node);
     }
-
-    BinaryNode* store(uint32_t from, uint32_t depth) const {
-        BinaryNode& to = *origin_[from];
-        const FlatNode& node = nodes_[from];
-        to.set_box(node.box());
-        // Splits by kind do not count.
-        to.depth = std::min(depth, max_depth_);
-        if (!node.is_leaf()) to.child[0] = store(node.left, depth + 1), to.child[1] = store(node.right, depth + 1);
-        return &to;
+    void set_height(uint32_t node) {
+        const BinaryNode& n = nodes_[node];
+        height_[node] = static_cast<uint8_t>(1 + std::max(height_[n.child(0)], height_[n.child(1)]));
     }
 
     uint32_t sibling(uint32_t node) const {
-        const FlatNode& p = nodes_[parent_[node]];
-        return p.left == node ? p.right : p.left;
+        const BinaryNode& p = nodes_[parent_[node]];
+        return p.child(0) == node ? p.child(1) : p.child(0);
     }
     void replace_child(uint32_t parent, uint32_t child, uint32_t by) {
-        (nodes_[parent].left == child ? nodes_[parent].left : nodes_[parent].right) = by;
+        nodes_[parent].set_child(nodes_[parent].child(0) == child ? 0 : 1, by);
         parent_[by] = parent;
     }
 
@@ -159,21 +135,22 @@ private:
             uint32_t node;
             float gain;
         };
+        const BinaryPool::View nodes(nodes_);
         Entry stack[2 * kMaxNodeLevels];
         uint32_t depth = 0;
-        stack[depth++] = {top, gain};
-        while (depth) {
-            const Entry e = stack[--depth];
-            if (e.gain - own <= best.gain) continue;
-            const FlatNode& node = nodes_[e.node];
-            const Box4 old = node.box();
-            const float joint = area(join(old, box));
-            consider(e.node, e.gain - joint, best);
-            if (node.is_leaf()) continue;
-            const float below = e.gain - (joint - area(old));
-            if (below - own <= best.gain) continue;
-            stack[depth++] = {node.left, below};
-            stack[depth++] = {node.right, below};
+        for (Entry e{top, gain};; e = stack[--depth]) {
+            // The right side is next, without a detour by the stack.
+            while (e.gain - own > best.gain) {
+                const BinaryNode& node = nodes[e.node];
+                const Box4 old = node.box();
+                const float joint = area(join(old, box));
+                consider(e.node, e.gain - joint, best);
+                if (node.is_leaf()) break;
+                e.gain -= joint - area(old);
+                stack[depth++] = {node.child(0), e.gain};
+                e.node = node.child(1);
+            }
+            if (depth == 0) return;
         }
     }
 
@@ -181,11 +158,11 @@ private:
     double refit(uint32_t node) {
         double gain = 0;
         for (; node != kNone; node = parent_[node]) {
-            FlatNode& n = nodes_[node];
+            BinaryNode& n = nodes_[node];
             gain += area(n.box());
-            n.set_box(join(nodes_[n.left].box(), nodes_[n.right].box()));
+            n.set_box(join(nodes_[n.child(0)].box(), nodes_[n.child(1)].box()));
             gain -= area(n.box());
-            height_[node] = static_cast<uint8_t>(1 + std::max(height_[n.left], height_[n.right]));
+            set_height(node);
         }
         return gain;
     }
@@ -206,17 +183,17 @@ private:
     void attach(uint32_t node, uint32_t target) {
         const uint32_t parent = parent_[node];
         replace_child(parent_[target], target, parent);
-        nodes_[parent].left = target, nodes_[parent].right = node;
+        nodes_[parent].set_child(0, target), nodes_[parent].set_child(1, node);
         parent_[target] = parent;
         refit(parent);
     }
 
+    BinaryPool& nodes_;
+    uint32_t root_, max_depth_;
     Float4 scale_;
-    uint32_t max_depth_;
-    std::vector<FlatNode> nodes_;
-    std::vector<BinaryNode*> origin_;
-    std::vector<uint32_t> parent_;
-    std::vector<uint8_t> height_;
+    std::vector<uint32_t> order_;  ///< every node before what is below it, the left side first
+    LargeArray<uint32_t> parent_;  ///< by node, as the height
+    LargeArray<uint8_t> height_;
 };
 
 /// The moves that gain something in the tree as it is, the best first.
@@ -228,28 +205,14 @@ std::vector<Move> find_moves(const Tree& tree, BuildMonitor& monitor) {
     });
     moves.erase(std::remove_if(moves.begin(), moves.end(), [](const Move& m) { return !(m.gain > 0); }), moves.end());
     std::sort(moves.begin(), moves.end(),
-              [](const Move& a, const Move& b) { return a.gain != b.gain ? a.gain > b.gain : a.node < b.node; });
+              [](const Move& a, const Move& b) { return a.gain != b.gain ? a.gain > b.gain : a.rank < b.rank; });
     return moves;
 }
 
-/// Appends the primitives of all leaves below to `ordered`, and says where they are now.
-void put_in_order(BinaryNode& node, std::span<const BuildPrimitive> primitives, LargeArray<BuildPrimitive>& ordered) {
-    const auto begin = static_cast<uint32_t>(ordered.size());
-    if (node.is_leaf()) {
-        const std::span<const BuildPrimitive> own = primitives.subspan(node.begin, node.end - node.begin);
-        ordered.insert(ordered.end(), own.begin(), own.end());
-    } else {
-        for (BinaryNode* child : node.child) put_in_order(*child, primitives, ordered);
-    }
-    node.begin = begin, node.end = static_cast<uint32_t>(ordered.size());
-}
-uint32_t primitives_below(const BinaryNode& node) {
-    return node.is_leaf() ? node.end - node.begin : primitives_below(*node.child[0]) + primitives_below(*node.child[1]);
-}
+}  // namespace
 
-/// Everything that is held only for this is gone again at its end.
-void optimise(BinaryNode& root, uint32_t max_depth, BuildMonitor& monitor, uint64_t work) {
-    Tree tree(root, max_depth);
+void reinsert(BinaryPool& nodes, uint32_t root, uint32_t max_depth, BuildMonitor& monitor, uint64_t work) {
+    Tree tree(nodes, root, max_depth);
     uint64_t work_left = work;
     for (int pass = 0; pass < kPasses && tree.has_room(); ++pass) {
         const std::vector<Move> moves = find_moves(tree, monitor);
@@ -261,18 +224,6 @@ void optimise(BinaryNode& root, uint32_t max_depth, BuildMonitor& monitor, uint6
         }
     }
     monitor.advance(work_left);
-    tree.store();
-}
-
-}  // namespace
-
-void reinsert(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
-              uint64_t work) {
-    optimise(root, max_depth, monitor, work);
-    LargeArray<BuildPrimitive> ordered;
-    ordered.reserve(primitives_below(root));
-    put_in_order(root, primitives, ordered);
-    primitives = std::move(ordered);
 }
 
 }  // namespace steradian

@@ -6,14 +6,12 @@
 
 namespace steradian {
 
-/// Of each node: itself, where it is from, its parent and height, and a move.
-inline constexpr size_t kReinsertionBytes = 57;
+/// Of each node: its rank, parent and height, and a move.
+inline constexpr size_t kReinsertionBytes = 21;
 
-/// Optimises the tree of `root`, which stays the root, and puts the primitives into the order of its leaves, each of
-/// which keeps what it had; what belongs to none is left out. No leaf gets deeper than `max_depth`. The sum of the
-/// surfaces of all nodes never grows. Holds kReinsertionBytes a node, and then a copy of the primitives. Uses all
-/// workers; the result does not depend on their number. `work` is what to report, see BvhOptions.
-void reinsert(BinaryNode& root, LargeArray<BuildPrimitive>& primitives, uint32_t max_depth, BuildMonitor& monitor,
-              uint64_t work);
+/// Optimises the tree of `root`, which stays the root; each leaf keeps what it had. No leaf gets deeper than
+/// `max_depth`. The sum of the surfaces of all nodes never grows. Holds kReinsertionBytes a node. Uses all workers; the
+/// result does not depend on their number. `work` is what to report, see BvhOptions.
+void reinsert(BinaryPool& nodes, uint32_t root, uint32_t max_depth, BuildMonitor& monitor, uint64_t work);
 
 }  // namespace steradian

@@ -61,6 +61,14 @@ struct RangeBounds {
 };
 RangeBounds range_bounds(std::span<const BuildPrimitive> primitives);
 
+/// What is to be divided: primitives in their places, and beside them what splits of boxes have added (SpatialSplit).
+struct Range {
+    std::span<BuildPrimitive> own, added = {};
+
+    size_t size() const { return own.size() + added.size(); }
+    const BuildPrimitive& front() const { return own.empty() ? added.front() : own.front(); }
+};
+
 /// Half the surface of boxes, in units of the range's largest extent: neither over- nor underflows where it matters.
 class Area {
 public:
@@ -84,19 +92,21 @@ inline float leaf_cost(ItemKind kind, size_t count) {
 
 /// What a split made of a range: how many are on the left, neither none nor all, and the bounds of both sides.
 struct Halves {
-    size_t left = 0;
+    size_t own = 0, added = 0;  ///< of Range::own and Range::added
     RangeBounds bounds[2];
-    size_t added = 0;      ///< how many more there are than before
     bool by_kind = false;  ///< not by place
+
+    size_t left() const { return own + added; }
 };
 
 /// Nothing when there are several kinds.
-std::optional<ItemKind> only_kind(std::span<const BuildPrimitive> primitives);
+std::optional<ItemKind> only_kind(const Range& range);
 /// Those of the first primitive's kind to the left. There must be several kinds.
-Halves split_by_kind(std::span<BuildPrimitive> primitives);
+Halves split_by_kind(const Range& range);
 
-/// Reorders the range around the median of (centroid, id) along the widest axis of the centroids: half are on the left.
-Halves split_median(std::span<BuildPrimitive> primitives, const RangeBounds& bounds);
+/// Reorders the range around the median of (centroid, id) along the widest axis of the centroids, what was added by
+/// itself: half are on the left.
+Halves split_median(const Range& range, const RangeBounds& bounds);
 
 /// The binned surface-area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
 struct SahSplit {
@@ -105,8 +115,7 @@ struct SahSplit {
     uint32_t bin = 0;  ///< the first one on the right
 };
 /// Nothing when all centroids coincide. All primitives cost what those of `kind` do.
-std::optional<SahSplit> find_sah_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                       ItemKind kind);
-Halves apply_sah_split(std::span<BuildPrimitive> primitives, const RangeBounds& bounds, const SahSplit& split);
+std::optional<SahSplit> find_sah_split(const Range& range, const RangeBounds& bounds, ItemKind kind);
+Halves apply_sah_split(const Range& range, const RangeBounds& bounds, const SahSplit& split);
 
 }  // namespace steradian

@@ -88,30 +88,30 @@ struct Bins {
     }
 };
 
-Bins count_all(std::span<const BuildPrimitive> primitives, const Slices& slices) {
-    Bins bins;
+void count_all(std::span<const BuildPrimitive> primitives, const Slices& slices, Bins& bins) {
     if (primitives.size() <= kChunk) {
         for (const BuildPrimitive& p : primitives) bins.add(p, slices);
-        return bins;
+        return;
     }
     std::vector<Bins> parts((primitives.size() + kChunk - 1) / kChunk);
     parallel_for(primitives.size(), kChunk, [&](size_t begin, size_t end) {
         for (const BuildPrimitive& p : primitives.subspan(begin, end - begin)) parts[begin / kChunk].add(p, slices);
     });
     for (const Bins& part : parts) bins.extend(part);
-    return bins;
 }
 
 }  // namespace
 
-std::optional<SpatialSplit> find_spatial_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                               ItemKind kind, size_t room) {
+std::optional<SpatialSplit> find_spatial_split(const Range& range, const RangeBounds& bounds, ItemKind kind,
+                                               size_t room) {
     const Area half_area_of(bounds);
     std::optional<SpatialSplit> best;
     for (int axis = 0; axis < 3; ++axis) {
         const Slices slices(bounds, axis);
         if (!slices.usable()) continue;
-        const Bins bins = count_all(primitives, slices);
+        Bins bins;
+        count_all(range.own, slices, bins);
+        count_all(range.added, slices, bins);
         float right_cost[kBins];
         uint32_t on_right[kBins], on_left = 0;
         Box4 side;
@@ -124,7 +124,7 @@ std::optional<SpatialSplit> find_spatial_split(std::span<const BuildPrimitive> p
         for (uint32_t i = 1; i < kBins; ++i) {
             side.extend(bins.box[i - 1]);
             on_left += bins.first[i - 1];
-            if (on_left == 0 || on_right[i] == 0 || on_left + on_right[i] - primitives.size() > room) continue;
+            if (on_left == 0 || on_right[i] == 0 || on_left + on_right[i] - range.size() > room) continue;
             const float cost = half_area_of(side) * leaf_cost(kind, on_left) + right_cost[i];
             if (!best || cost < best->cost) best = SpatialSplit{cost, axis, slices.plane(i), on_left, on_right[i]};
         }
@@ -136,28 +136,30 @@ std::optional<SpatialSplit> find_spatial_split(std::span<const BuildPrimitive> p
     return best;
 }
 
-Halves apply_spatial_split(std::span<BuildPrimitive> primitives, size_t count, const SpatialSplit& split) {
+Halves apply_spatial_split(const Range& range, const SpatialSplit& split, std::vector<BuildPrimitive>& cut) {
     Halves halves;
     const int axis = split.axis;
-    size_t left = 0, right = count, end = count;
-    while (left < right) {
-        BuildPrimitive& p = primitives[left];
-        const Sides sides = sides_of(p, split);
-        if (!sides.left) {
-            halves.bounds[1].extend(p);
-            std::swap(p, primitives[--right]);
-            continue;
+    const auto divide = [&](std::span<BuildPrimitive> primitives) {
+        size_t left = 0, right = primitives.size();
+        while (left < right) {
+            BuildPrimitive& p = primitives[left];
+            const Sides sides = sides_of(p, split);
+            if (!sides.left) {
+                halves.bounds[1].extend(p);
+                std::swap(p, primitives[--right]);
+                continue;
+            }
+            if (sides.right) {
+                BuildPrimitive& part = cut.emplace_back(p);
+                part.lo[axis] = p.hi[axis] = split.plane;
+                halves.bounds[1].extend(part);
+            }
+            halves.bounds[0].extend(p);
+            ++left;
         }
-        if (sides.right) {
-            BuildPrimitive& part = primitives[end++];
-            part = p;
-            part.lo[axis] = p.hi[axis] = split.plane;
-            halves.bounds[1].extend(part);
-        }
-        halves.bounds[0].extend(p);
-        ++left;
-    }
-    halves.left = left, halves.added = end - count;
+        return left;
+    };
+    halves.own = divide(range.own), halves.added = divide(range.added);
     return halves;
 }
 

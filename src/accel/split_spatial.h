@@ -1,6 +1,8 @@
 // Splits of the boxes themselves: what reaches over a plane goes to both sides of it.
 #pragma once
 
+#include <vector>
+
 #include "accel/split.h"
 
 namespace steradian {
@@ -28,11 +30,10 @@ struct SpatialSplit {
 
 /// Nothing when no plane has less than everything on both sides, or when more than `room` would be added. Only blocks
 /// are cut; anything else goes where its centroid is.
-std::optional<SpatialSplit> find_spatial_split(std::span<const BuildPrimitive> primitives, const RangeBounds& bounds,
-                                               ItemKind kind, size_t room);
-/// The range is the first `count` of `primitives`, which has room for what is added; what is on the right follows what
-/// is on the left.
-Halves apply_spatial_split(std::span<BuildPrimitive> primitives, size_t count, const SpatialSplit& split);
+std::optional<SpatialSplit> find_spatial_split(const Range& range, const RangeBounds& bounds, ItemKind kind,
+                                               size_t room);
+/// Appends what is added, which belongs to the right side, to `cut`.
+Halves apply_spatial_split(const Range& range, const SpatialSplit& split, std::vector<BuildPrimitive>& cut);
 
 /// Splits of boxes add at most one for this many primitives.
 inline constexpr size_t kPrimitivesPerCut = 2;
