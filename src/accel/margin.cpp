@@ -82,7 +82,7 @@ std::optional<Vec3> rounding_margin(const PlacedGeometry& placed, const Affine& 
     for (int axis = 0; axis < 3; ++axis) {
         double sum = std::fabs(b.m[axis][3]);
         for (int k = 0; k < 3; ++k) sum += std::fabs(b.m[axis][k]) * most;
-        inside[axis] = 0x1p-19 * width[axis] + 0x1p-23 * magnitude[axis] + 0x1p-48 * sum;
+        inside[axis] = 0x1.6p-20 * width[axis] + 0x1p-23 * magnitude[axis] + 0x1p-48 * sum;
     }
     const Affine off = residual(a, b);
     Vec3 margin;
@@ -91,7 +91,7 @@ std::optional<Vec3> rounding_margin(const PlacedGeometry& placed, const Affine& 
         for (int k = 0; k < 3; ++k) sum += std::fabs(a.m[axis][k]) * inside[k], of_product += off.m[axis][k];
         if (!(of_product <= 0x1p-10)) return std::nullopt;
         sum += of_product * most + off.m[axis][3] + 0x1p-70 * reach + kLeastMargin;
-        margin[axis] = above(sum + 0x1p-19 * (double(near.hi[axis]) - near.lo[axis]));
+        margin[axis] = above(sum + 0x1p-22 * (double(near.hi[axis]) - near.lo[axis]));
     }
     const float limit = kMaxMarginShare * max_component(placed.world.hi - placed.world.lo);
     if (!(max_component(margin) <= limit)) return std::nullopt;

@@ -6,17 +6,23 @@
 // far can o + t d be from A P? For rays that are near (is_near: o within a box N around the scene, |d| neither huge nor
 // tiny), with w_i the extent of B N along axis i and n_i the largest magnitude in it:
 //
-//   1. p(t) lies within P grown by s w_i: computed planes are off by 3 * 2^-24 of their distance, of which the exact
-//      one is at most w_i, and the far one is scaled by 1 + 2^-20 besides: s < 1.26 * 2^-20. (kFarPad adds 2^-74.)
+//   1. p(t) lies within P grown by s w_i: computed planes are off by e = 3 * 2^-24 of their distance, of which the
+//      exact one is at most w_i, and the far one is scaled by 1 + 2^-20 besides: s < 1.26 * 2^-20. (kFarPad adds
+//      2^-74.)
 //   2. o' is off by 2^-24 n_i, and t d' by 2^-24 |t d'_i| < 2^-24 (1 + s) w_i, from the rounding to float, and both by
 //      2^-50 of the sums of magnitudes that the double arithmetic runs into, |B| (|o| + |t d|) and B's own translation;
 //      components of d' below 2^-126 become 0.
 //   3. A B is not quite the identity: its difference is computed, with what that computation may be off by.
 //
-// So o + t d lies within A P grown by |A| (1. + 2.) + 3., and since along every axis a computed plane that is another
-// 1.26 * 2^-20 of N's extent farther out is on the right side of t by step 1 again, t lies in the slab interval that
-// the world's ray has with that larger box. rounding_margin() takes 2^-19 for 1.26 * 2^-20, 2^-23 and 2^-48 for 2^-24
-// and 2^-50. |t d| itself is bounded by |A| w, since |d| is that of A B d but for a share of at most 2^-10.
+// So o + t d lies within A P grown by |A| (1. + 2.) + 3. Along every axis a computed plane of the world's box that is
+// another e of N's extent farther out is on the right side of t: the near one at once. Of the far ones before they are
+// scaled, the same holds with the least time T that P's have before they are scaled in place of t, for which 1. to 3.
+// are true as well; scaling is monotone and the same for both, so what T is within scales to what t is within. So t
+// lies in the slab interval that the world's ray has with that larger box.
+//
+// rounding_margin() takes 1.38 * 2^-20 for 1.26 * 2^-20 and the 2^-24 (1 + s) of 2., 2^-23 for the 2^-24 of n_i,
+// 2^-48 for 2^-50 and 2^-22 for e. |t d| itself is bounded by |A| w, since |d| is that of A B d but for a share of at
+// most 2^-10.
 //
 // The world box of an instance is that of its geometry grown by the margin, so a hit of a near ray is where it was
 // found: settle() has nothing to clamp. And it is in the slab interval of every part's world box, grown in the same
