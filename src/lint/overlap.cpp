@@ -71,7 +71,7 @@ Polygon clipped(const Polygon& polygon, Point2 a, Point2 b) {
 /// A piece seen along an axis that its plane is far from.
 struct Flat {
     Placed placed;
-    std::array<Point2, 3> p;  ///< counter-clockwise
+    std::array<Point2, 3> p;     ///< counter-clockwise
     double least = 0, most = 0;  ///< x
     double least_y = 0, most_y = 0;
 
@@ -159,8 +159,8 @@ private:
         for (size_t i = 0; i < flats.size(); ++i)
             for (size_t k = i + 1; k < flats.size() && flats[k].least < flats[i].most; ++k) {
                 if (++compared_ > kMostPairs) return;
-                if (differ(flats[i].placed.instance, flats[k].placed.instance) &&
-                    flats[i].least_y < flats[k].most_y && flats[k].least_y < flats[i].most_y)
+                if (differ(flats[i].placed.instance, flats[k].placed.instance) && flats[i].least_y < flats[k].most_y &&
+                    flats[k].least_y < flats[i].most_y)
                     look(flats[i], flats[k], axis);
             }
     }

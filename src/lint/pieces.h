@@ -1,4 +1,5 @@
-// The surfaces of objects as triangles in the world, and what a ray meets of them, one by one: for the few rays of lint.
+// The surfaces of objects as triangles in the world, and what a ray meets of them, one by one: for the few rays of
+// lint.
 #pragma once
 
 #include <array>

@@ -206,11 +206,16 @@ std::vector<int> sky() {
 const Case kPictures[] = {
     {"NormalMap", "", [](LintScene& t) { map_normals(t, normals(plain, 1)); }},
     {"NormalMapThatWasSavedAsColours", "normal-map", [](LintScene& t) { map_normals(t, normals(srgb_coded, 1)); }},
-    {"FlatNormalMapThatWasSavedAsColours", "normal-map", [](LintScene& t) { map_normals(t, {188, 188, 255}); }},
+    {"FlatNormalMapThatWasSavedAsColours", "normal-map",
+     [](LintScene& t) {
+         map_normals(t, {188, 188, 255});
+     }},
     {"NormalMapAsColours", "color-space", [](LintScene& t) { paint(t, normals(plain, 1)); }},
-    {"NormalMapAsLinearColours", "color-space",
-     [](LintScene& t) { paint(t, normals(plain, 1), ColorSpace::linear); }},
-    {"LavenderIsAColour", "", [](LintScene& t) { paint(t, {128, 128, 255, 128, 128, 255}); }},
+    {"NormalMapAsLinearColours", "color-space", [](LintScene& t) { paint(t, normals(plain, 1), ColorSpace::linear); }},
+    {"LavenderIsAColour", "",
+     [](LintScene& t) {
+         paint(t, {128, 128, 255, 128, 128, 255});
+     }},
     {"SkyIsAColour", "", [](LintScene& t) { paint(t, sky()); }},
     {"NormalsToAllSidesAreColours", "", [](LintScene& t) { paint(t, normals(plain, 3)); }},
     {"ATenthOfTheNormalsIsSomethingElse", "",

@@ -82,8 +82,7 @@ const Case kCases[] = {
      [](LintScene& t) {
          t.s.textures[0] = ConstantTexture{{1.000005f, 1, 1}};
      }},
-    {"Ior", "ior-one",
-     [](LintScene& t) { t.s.textures.clear(), t.s.materials[0] = GlassMaterial{1.0009f}; }},
+    {"Ior", "ior-one", [](LintScene& t) { t.s.textures.clear(), t.s.materials[0] = GlassMaterial{1.0009f}; }},
     {"IorAbove", "", [](LintScene& t) { t.s.textures.clear(), t.s.materials[0] = GlassMaterial{1.0011f}; }},
     {"IorBelow", "", [](LintScene& t) { t.s.textures.clear(), t.s.materials[0] = GlassMaterial{0.9989f}; }},
     {"Giant", "scale", [](LintScene& t) { giant(t, 1010); }},

@@ -120,8 +120,8 @@ TEST(CoatNormal, APolishedCoatIsAMirrorAboutIt) {
     OpenPbrMaterial m = white_coated(0);
     m.base_weight = 0, m.specular_weight = 0;
     Random random(73);
-    for (const std::optional<Vec3d> coat : {std::optional<Vec3d>(), std::optional<Vec3d>(tilted(10)),
-                                            std::optional<Vec3d>(tilted(25, 2))}) {
+    for (const std::optional<Vec3d> coat :
+         {std::optional<Vec3d>(), std::optional<Vec3d>(tilted(10)), std::optional<Vec3d>(tilted(25, 2))}) {
         const Layers layers(m, coat, tilted(20, 4));
         const Vec3d n = coat.value_or(Vec3d{0, 0, 1});
         for (const Vec3d wo : {Vec3d{0, 0, 1}, tilted(30, 1), tilted(40, 3)}) {
@@ -315,7 +315,8 @@ TEST(Grain, OfTheBaseIsNotThatOfTheCoat) {
     for (int i = 0; i < 50; ++i) {
         const Vec3d wo = normalize(random.direction() + Vec3d{0, 0, 1.1}),
                     wi = normalize(random.direction() + Vec3d{0, 0, 1.1});
-        const float a = eval(plain.bsdf(wo), Vec3(wo), Vec3(wi)).f_cos.r, b = eval(other.bsdf(wo), Vec3(wo), Vec3(wi)).f_cos.r;
+        const float a = eval(plain.bsdf(wo), Vec3(wo), Vec3(wi)).f_cos.r,
+                    b = eval(other.bsdf(wo), Vec3(wo), Vec3(wi)).f_cos.r;
         EXPECT_NEAR(a, b, 1e-5f * a + 1e-9f);
         EXPECT_TRUE(std::get<OpenPbrBsdf>(other.bsdf(wo).lobe).coat_apart);
     }

@@ -1,6 +1,6 @@
-// A coat about a normal of its own. It lets pass what it does not reflect of the light from wo, as it is seen from there,
-// to all that lies below it; both are folded at the surface where their normals come from maps (fold.h), so that as
-// much as about one normal is kept, and nothing leaks. Fuzz has the normal of the base.
+// A coat about a normal of its own. It lets pass what it does not reflect of the light from wo, as it is seen from
+// there, to all that lies below it; both are folded at the surface where their normals come from maps (fold.h), so that
+// as much as about one normal is kept, and nothing leaks. Fuzz has the normal of the base.
 #pragma once
 
 #include "shading/bsdf/fold.h"
@@ -37,13 +37,13 @@ inline std::optional<Vec3d> sample_local(const OpenPbrBelowCoat& below, Vec3d wo
 }
 
 template <class Part>
-requires std::is_same_v<Part, OpenPbrCoatAlone> || std::is_same_v<Part, OpenPbrBelowCoat>
-BsdfEval eval_lobe(const Part& part, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
+requires std::is_same_v<Part, OpenPbrCoatAlone> || std::is_same_v<Part, OpenPbrBelowCoat> BsdfEval
+eval_lobe(const Part& part, const LobeGeometry& g, Vec3 wo, Vec3 wi) {
     return eval_by_frame(part, g, wo, wi);
 }
 template <class Part>
-requires std::is_same_v<Part, OpenPbrCoatAlone> || std::is_same_v<Part, OpenPbrBelowCoat>
-std::optional<BsdfSample> sample_lobe(const Part& part, const LobeGeometry& g, Vec3 wo, float uc, Vec2 u) {
+requires std::is_same_v<Part, OpenPbrCoatAlone> || std::is_same_v<Part, OpenPbrBelowCoat> std::optional<BsdfSample>
+sample_lobe(const Part& part, const LobeGeometry& g, Vec3 wo, float uc, Vec2 u) {
     return sample_by_frame(part, g, wo, uc, u);
 }
 
