@@ -22,8 +22,8 @@ namespace {
 struct TriangleBytes {
     uint64_t held, build;
 };
-constexpr TriangleBytes kSah{55, 20}, kMedian{66, 30}, kFast{56, 55}, kHighQuality{57, 80};
-constexpr TriangleBytes kCompact{30, 50}, kCompactFast{30, 80}, kCompactHighQuality{30, 110};
+constexpr TriangleBytes kSah{55, 4}, kMedian{66, 5}, kFast{56, 4}, kHighQuality{57, 4};
+constexpr TriangleBytes kCompact{30, 28};
 constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
 constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
 
@@ -31,11 +31,11 @@ TriangleBytes triangle_bytes(const Execution& execution) {
     const bool compact = execution.bvh_layout == BvhLayout::compact;
     switch (execution.bvh) {
         case BvhBuilder::high_quality:
-            return compact ? kCompactHighQuality : kHighQuality;
+            return compact ? kCompact : kHighQuality;
         case BvhBuilder::median:
             return compact ? kCompact : kMedian;
         case BvhBuilder::fast:
-            return compact ? kCompactFast : kFast;
+            return compact ? kCompact : kFast;
         case BvhBuilder::sah:
             break;
     }

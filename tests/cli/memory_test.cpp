@@ -26,7 +26,7 @@ protected:
 
 TEST_F(Memory, TheEstimateForAMeshIsRight) {
     if (kSanitized) GTEST_SKIP() << "under a sanitizer";
-    spit(folder_.file("grid.ply"), grid_ply(700));  // 980 000 triangles
+    spit(folder_.file("grid.ply"), grid_ply(800));  // 1.3 million triangles
     expect_estimate("grid.ply", {});
 }
 
@@ -51,7 +51,7 @@ TEST_F(Memory, TheEstimateForManyLightsIsRight) {
 
 TEST_F(Memory, ASceneThatDoesNotFitIsRefusedBeforeTheHierarchyIsBuilt) {
     if (kSanitized) GTEST_SKIP() << "under a sanitizer";
-    spit(folder_.file("grid.ply"), grid_ply(1200));  // 2.9 million triangles: 52 MB as they are, 390 MB to render
+    spit(folder_.file("grid.ply"), grid_ply(1500));  // 4.5 million triangles: 81 MB as they are, 360 MB to render
     const Outcome o = Process(folder_, {"render", "grid.ply", "--bvh", "high-quality", "--threads", "1", "-o", "a.png"},
                               limit_memory<(350 << 20)>)
                           .wait();
