@@ -134,7 +134,8 @@ inline constexpr float kMaxAnisotropy = 0.999f;
 /// Of a body that overlaps or touches others: where several are, there is the one with the highest priority, and of
 /// equal priorities that whose material comes first (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced
 /// Images"). The surfaces of one material bound one body, which is their union. Its index is then that over vacuum.
-/// Bodies without a priority are wholly inside or outside of each other.
+/// Bodies without a priority are wholly inside or outside of each other. What has one neither emits nor has holes, in a
+/// mix either.
 using Priority = std::optional<uint32_t>;
 
 /// Dielectric: Fresnel reflection and refraction, radiance scaled by (η_i/η_t)² at each interface. Where it is rough,

@@ -101,7 +101,7 @@ private:
     void compare(const Placed& a, const Placed& b) {
         const MaterialId first = scene_.instances[a.instance].material, second = scene_.instances[b.instance].material;
         const Corners ca = corners(a.instance, a.triangle), cb = corners(b.instance, b.triangle);
-        if (!same_places(ca, cb)) return;
+        if (ordered(scene_, first, second) || !same_places(ca, cb)) return;
         const bool shines = check_.world.emits(a.instance) || check_.world.emits(b.instance);
         const bool matters = first != second || shines || (!optics_of(scene_, first).opaque && face_alike(ca, cb));
         if (!matters) return;

@@ -72,6 +72,11 @@ private:
             albedo(highest, what);
         }
     }
+    /// Fog has no boundary to see, and with a priority an index of 1 is that of a bubble.
+    template <class Body>
+    void index_of_body(const Body& m, float eta) {
+        if (m.interior == Medium{} && !m.priority) index_of_refraction(eta);
+    }
     void index_of_refraction(float eta) {
         if (!(std::fabs(eta - 1) < kNoBoundary)) return;
         check_.out.add(Rule::ior_one, element(),
@@ -83,7 +88,7 @@ private:
     void look_at(const DiffuseMaterial& m) { albedo(m.reflectance, "reflectance"); }
     void look_at(const RefractionMaterial& m) { index_of_refraction(m.eta); }
     void look_at(const GlassMaterial& m) {
-        index_of_refraction(m.eta);
+        index_of_body(m, m.eta);
         albedo(m.reflectance, "reflectance");
         albedo(m.transmittance, "transmittance");
     }
@@ -108,7 +113,7 @@ private:
         if (r && t) albedo(*r + *t, "the sum of reflectance and transmittance");
     }
     void look_at(const OpenPbrMaterial& m) {
-        if (m.transmission_weight.value > 0) index_of_refraction(m.specular_ior);
+        if (m.transmission_weight.value > 0) index_of_body(m, m.specular_ior);
         albedo(m.base_color, m.base_weight, "base_color");
         if (m.subsurface_weight.value > 0) albedo(m.subsurface_color, 1, "subsurface_color");
         if (m.transmission_weight.value > 0) albedo(m.transmission_color, 1, "transmission_color");

@@ -176,7 +176,8 @@ private:
     }
     /// Two equal surfaces look like one.
     bool differ(uint32_t a, uint32_t b) const {
-        return a != b && scene_.instances[a].material != scene_.instances[b].material;
+        const MaterialId first = scene_.instances[a].material, second = scene_.instances[b].material;
+        return a != b && first != second && !ordered(scene_, first, second);
     }
 
     void look(const Flat& a, const Flat& b, int axis) {

@@ -72,6 +72,23 @@ Optics optics_of(const Scene& scene, MaterialId id) {
     return out;
 }
 
+namespace {
+
+bool has_priority(const Scene& scene, MaterialId id) {
+    const Material& material = scene.materials[index(id)];
+    if (const auto* mix = std::get_if<MixMaterial>(&material))
+        return has_priority(scene, mix->first) || has_priority(scene, mix->second);
+    if (const auto* glass = std::get_if<GlassMaterial>(&material)) return glass->priority.has_value();
+    const auto* layered = std::get_if<OpenPbrMaterial>(&material);
+    return layered && layered->priority && optics_of(scene, id).solid;
+}
+
+}  // namespace
+
+bool ordered(const Scene& scene, MaterialId a, MaterialId b) {
+    return a != b && has_priority(scene, a) && has_priority(scene, b);
+}
+
 World::World(const Scene& scene) : scene_(scene) {
     mesh_boxes_.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) mesh_boxes_.push_back(box_of(mesh));

@@ -32,6 +32,8 @@ struct Optics {
     bool opaque = true;      ///< nothing ever passes
 };
 Optics optics_of(const Scene& scene, MaterialId id);
+/// Bodies with priorities may touch and overlap: which of them is seen is said.
+bool ordered(const Scene& scene, MaterialId a, MaterialId b);
 
 /// Ids must be valid. Boxes are those of vertices that are used and usable.
 class World {

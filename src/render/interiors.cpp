@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shading/surface.h"
+#include "shading/surface_error.h"
 
 namespace steradian {
 namespace {
@@ -106,7 +107,12 @@ void Interiors::cross(Interior& inside, const Ray& ray, const Hit& hit, float& r
 bool Interiors::passes_priority(Walk& walk, const Ray& ray, Hit& hit) const noexcept {
     if (same_place(hit, walk.last)) return true;
     walk.last = hit;
-    if (!(hit.t <= walk.group_end)) walk.group = walk.now;
+    if (!(hit.t <= walk.group_end)) {
+        walk.group = walk.now;
+        walk.group_begin = hit.t;
+        walk.group_size = 0;
+    }
+    ++walk.group_size;
     cross(walk.now, ray, hit, walk.group_end);
     if (walk.group.filling() == walk.now.filling()) {
         walk.before = walk.after = walk.now;
@@ -119,7 +125,10 @@ bool Interiors::passes_priority(Walk& walk, const Ray& ray, Hit& hit) const noex
     for (Hit next;; last = next) {
         c_.scene.accel.next_hit({&ray, 1}, {&last, 1}, {&next, 1});
         if (!next.found() || !(next.t <= walk.group_end) || !shading_.has_priority(next.instance)) break;
-        if (!same_place(next, last)) cross(walk.now, ray, next, walk.group_end);
+        if (!same_place(next, last)) {
+            cross(walk.now, ray, next, walk.group_end);
+            ++walk.group_size;
+        }
         if (count < found.size()) found[count++] = next;
     }
     if (walk.group.filling() == walk.now.filling()) {
@@ -138,7 +147,21 @@ bool Interiors::passes_priority(Walk& walk, const Ray& ray, Hit& hit) const noex
     for (uint32_t i = 0; i < count; ++i)
         if (shading_.material_of(found[i].instance) == (of_far ? far : near)) hit = found[i];
     walk.outer_index = (of_far ? walk.before : walk.after).index(shading_);
+    // Both ends are rounded to float.
+    const double rounding = last.t * 0x1p-23;
+    walk.reach = walk.group_size > 1 ? max_of(hit.t - walk.group_begin, last.t - hit.t) + rounding : 0;
     return false;
+}
+
+/// New rays start beyond all boundaries of the place, since they have what is before or behind all of them.
+void Interiors::describe(uint32_t path, const Ray& ray, const Hit& hit, SurfacePoint& point) const noexcept {
+    if (!shading_.has_priority(hit.instance)) return;
+    const Walk& walk = states_[path].walk;
+    point.outer_index = walk.outer_index;
+    if (!(walk.reach > 0)) return;
+    const double along_normal = std::fabs(dot(Vec3d(point.ng), Vec3d(ray.d))) * walk.reach;
+    for (int i = 0; i < 3; ++i)
+        point.p_error[i] = round_up(point.p_error[i] + std::fabs(static_cast<double>(point.ng[i])) * along_normal);
 }
 
 void Interiors::end_in_medium(uint32_t path, Rgb throughput, Vec2 u, Ray& ray) const noexcept {

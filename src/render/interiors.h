@@ -34,8 +34,8 @@ public:
 
     /// The path goes on from its vertex, to the other side of the surface or not.
     void turn(uint32_t path, bool beyond) noexcept { states_[path].beyond = beyond; }
-    /// What is around the body whose boundary the path has met (SurfacePoint::outer_index).
-    float outer_index(uint32_t path) const noexcept { return states_[path].walk.outer_index; }
+    /// What the path's vertex has to know of the boundary that it lies on.
+    void describe(uint32_t path, const Ray& ray, const Hit& hit, SurfacePoint& point) const noexcept;
     /// Of the path's next ray, which leaves its vertex, or of the camera ray: `ray` ends where it is scattered, if that
     /// comes before what it hits.
     void end_in_medium(uint32_t path, Rgb throughput, Vec2 u, Ray& ray) const noexcept;
@@ -50,12 +50,14 @@ public:
 
     class Walk {
         friend class Interiors;
-        Interior now;            ///< where the ray has come to
-        Interior group;          ///< before the boundaries that may be in one place with the next
-        float group_end = -1;    ///< along the ray
+        Interior now;                            ///< where the ray has come to
+        Interior group;                          ///< before the boundaries that may be in one place with the next
+        float group_begin = -1, group_end = -1;  ///< along the ray
+        uint32_t group_size = 0;
         Hit last;                ///< of a boundary that is not there
         Interior before, after;  ///< at the boundary that has been found; no boundary: the same
-        float outer_index = 1;
+        float outer_index = 1;   ///< of what is around the body whose boundary that is
+        double reach = 0;        ///< along the ray, how far from its hit the others of the group may be
     };
 
 private:

@@ -213,7 +213,7 @@ void WavefrontIntegrator::record_vertex(uint32_t id, const Ray& ray, const Hit& 
     if (vertex.in_medium) vertex.position = vertex_in_medium(id, ray).from.p;
     if (hit.found()) {
         SurfacePoint point = surface_at(shading_, ray, hit);
-        if (interiors_.wanted()) point.outer_index = interiors_.outer_index(id);
+        if (interiors_.wanted()) interiors_.describe(id, ray, hit, point);
         vertex.position = point.p;
         vertex.normal = make_bsdf(shading_, point).frame.z;
         vertex.instance = hit.instance;

@@ -93,7 +93,7 @@ protected:
             cone = cone.after(hit.t);
             out.footprint = footprint_of(cone, out);
         }
-        if (interiors_.wanted()) out.outer_index = interiors_.outer_index(id);
+        if (interiors_.wanted()) interiors_.describe(id, ray, hit, out);
         if (depth_ == 0 && first_hits_.wanted()) first_hits_.see(id, paths_[id].key, out, -ray.d);
         return out;
     }

@@ -36,6 +36,7 @@ public:
         light_uniqueness();
         relief_uniqueness();
         mixes_end();
+        priorities();
         emission_uniqueness();
     }
 
@@ -378,6 +379,30 @@ private:
             if (std::holds_alternative<MixMaterial>(s_.materials[index(relief.material)]))
                 throw Fault{
                     fmt::format("material {} is a mix: relief belongs to what is mixed", index(relief.material))};
+    }
+
+    /// Where a boundary is not there, neither is what it emits; and light samples do not know in which bodies a ray is
+    /// behind a hole. So what has a priority has neither. Mixes are known to end.
+    void priorities() const {
+        struct Traits {
+            bool priority = false, holes = false;
+        };
+        std::vector<Traits> of(s_.materials.size());
+        for (size_t i = 0; i < of.size(); ++i) {
+            if (const auto* glass = std::get_if<GlassMaterial>(&s_.materials[i])) of[i].priority = !!glass->priority;
+            if (const auto* m = std::get_if<OpenPbrMaterial>(&s_.materials[i]))
+                of[i] = {m->priority.has_value(), m->geometry_opacity.value < 1 || m->geometry_opacity.texture};
+            if (const auto* mix = std::get_if<MixMaterial>(&s_.materials[i])) {
+                const Traits &a = of[index(mix->first)], &b = of[index(mix->second)];
+                of[i] = {a.priority || b.priority, a.holes || b.holes};
+                if (of[i].priority && of[i].holes)
+                    throw Fault{fmt::format("material {} is a mix of a body with a priority and of holes", i)};
+            }
+        }
+        for (size_t i = 0; i < s_.lights.size(); ++i)
+            if (const auto* light = std::get_if<AreaLight>(&s_.lights[i]))
+                if (of[index(s_.instances[index(light->instance)].material)].priority)
+                    throw Fault{fmt::format("light {}: the surface of a body with a priority emits nothing", i)};
     }
 
     void relief_uniqueness() const {

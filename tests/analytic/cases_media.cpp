@@ -195,6 +195,21 @@ void add_nested(std::vector<Case>& out) {
         add(!v.water_first);
         out.push_back(noisy(whole(std::string("nested_") + v.name, formula, scene, expected)));
     }
+    // Nearly touching, as two transforms put them: one boundary while a ray cannot tell the two apart, whichever comes
+    // first; and never one that counts twice.
+    for (int steps = 1; steps <= 3; ++steps)
+        for (const bool gap : {true, false})
+            for (const bool water_wins : {true, false}) {
+                SceneText scene = above_plates({0.37, 0.21, 2}, {0.37, 0.21, 1});
+                const double top = 1 + steps * (gap ? -0x1p-24 : 0x1p-23);
+                scene.material("glass", body(kEta, in_glass, 2))
+                    .material("water", body(kWater, in_water, water_wins ? 3 : 1));
+                add_plate(add_plate(scene, 1.5, 1, "glass"), top, 0.5, "water");
+                out.push_back(
+                    noisy(whole("nested_" + std::to_string(steps) + (gap ? "_steps_of_gap" : "_steps_of_overlap") +
+                                    (water_wins ? "_water_wins" : ""),
+                                formula, scene, expected)));
+            }
     SceneText reversed = above_plates();
     reversed.material("glass", body(kEta, in_glass, 1)).material("water", body(kWater, in_water, 2));
     add_plate(add_plate(reversed, 0.5, 0, "glass"), 0.2, -0.5, "water");

@@ -19,6 +19,13 @@ OpenPbrMaterial half_there() {
     return m;
 }
 
+/// Ice on water, with the upper one's floor in the lower one's top.
+void stack(LintScene& t, Priority of_ice) {
+    GlassMaterial water{1.33f}, ice{1.31f};
+    water.priority = 1, ice.priority = of_ice;
+    t.place(cube(0.5f), t.material(water), at(2, 0, 0)), t.place(cube(0.25f), t.material(ice), at(2, 0.75, 0));
+}
+
 const Case kPlanes[] = {
     {"TwoRectangles", "overlapping-surfaces",
      [](LintScene& t) {
@@ -83,6 +90,8 @@ const Case kPlanes[] = {
          t.place(facing({2, 0, 0}, 0.5f, 0.5f), MaterialId{0}), t.place(facing({2.5f, 0, 0}, 0.5f, 0.25f), t.grey());
          t.place(facing({2, 0, 1}, 2, 2), t.material(half_there()));
      }},
+    {"BodiesThatStandOnEachOther", "overlapping-surfaces", [](LintScene& t) { stack(t, std::nullopt); }},
+    {"BodiesWithPrioritiesThatStandOnEachOther", "", [](LintScene& t) { stack(t, 2); }},
     {"OverlapBehindAWall", "",
      [](LintScene& t) {
          t.place(facing({2, 0, 0}, 0.5f, 0.5f), MaterialId{0}), t.place(facing({2.5f, 0, 0}, 0.5f, 0.25f), t.grey());

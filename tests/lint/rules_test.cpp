@@ -126,6 +126,14 @@ const Case kMaterialCases[] = {
      }},
     {"VacuumGlass", "ior-one", [](LintScene& t) { wear(t, glass(1)); }},
     {"ThinAir", "", [](LintScene& t) { wear(t, glass(1.002f)); }},
+    {"Fog", "",
+     [](LintScene& t) {
+         wear(t, GlassMaterial{1, {1, 1, 1}, {1, 1, 1}, {}, 0, {{}, {1, 1, 1}, 0}});
+     }},
+    {"AirWithAPriority", "",
+     [](LintScene& t) {
+         wear(t, GlassMaterial{1, {1, 1, 1}, {1, 1, 1}, {}, 0, {}, 2});
+     }},
     {"VacuumRefraction", "ior-one", [](LintScene& t) { wear(t, RefractionMaterial{1}); }},
     {"OpaqueWithIorOne", "",
      [](LintScene& t) {
@@ -255,6 +263,18 @@ const Case kMeshCases[] = {
      [](LintScene& t) {
          const MaterialId m = t.material(glass());
          t.place(cube(0.1f), m, at(2, 0, 0)), t.place(cube(0.1f), m, at(2, 0, 0));
+     }},
+    {"BodiesThatTouch", "",
+     [](LintScene& t) {
+         const MaterialId water = t.material(GlassMaterial{1.33f, {1, 1, 1}, {1, 1, 1}, {}, 0, {}, 1}),
+                          ice = t.material(GlassMaterial{1.31f, {1, 1, 1}, {1, 1, 1}, {}, 0, {}, 2});
+         t.place(cube(0.1f), water, at(2, 0, 0)), t.place(cube(0.1f), ice, at(2, 0, 0));
+     }},
+    {"BodiesThatTouchOfWhichOneHasAPriority", "coincident-surfaces",
+     [](LintScene& t) {
+         const MaterialId water = t.material(GlassMaterial{1.33f, {1, 1, 1}, {1, 1, 1}, {}, 0, {}, 1}),
+                          ice = t.material(GlassMaterial{1.31f});
+         t.place(cube(0.1f), water, at(2, 0, 0)), t.place(cube(0.1f), ice, at(2, 0, 0));
      }},
     {"TwoMaterialsInOnePlaceByTransforms", "coincident-surfaces",
      [](LintScene& t) {

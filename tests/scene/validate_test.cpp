@@ -78,6 +78,24 @@ INSTANTIATE_TEST_SUITE_P(
                   m.geometry_thin_walled = true;
                   s.materials[0] = m;
               }},
+        Fault{"a mix of a body with a priority and of holes",
+              [](Scene& s) {
+                  GlassMaterial glass;
+                  glass.priority = 1;
+                  OpenPbrMaterial hole;
+                  hole.geometry_opacity = {0.5f};
+                  s.materials = {hole, glass, MixMaterial{MaterialId{1}, MaterialId{0}},
+                                 MixMaterial{MaterialId{2}, MaterialId{1}}};
+              }},
+        Fault{"the surface of a body with a priority emits nothing",
+              [](Scene& s) {
+                  GlassMaterial glass;
+                  glass.priority = 0;
+                  s.materials[0] = glass;
+                  s.materials.push_back(MixMaterial{MaterialId{0}, MaterialId{0}});
+                  s.instances[0].material = MaterialId{1};
+                  s.lights = {AreaLight{InstanceId{0}, {1, 1, 1}}};
+              }},
         Fault{"relief 0: refers to material 5",
               [](Scene& s) {
                   s.reliefs = {{MaterialId{5}, NormalMap{}}};

@@ -1,4 +1,5 @@
 // The extensions of materials, as far as OpenPBR says the same or comes near.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,7 +38,7 @@ void Materials::read_transmission(const Object& material, Reading& r) {
     if (!r.solid || s.transmission_weight.value == 0 || !volume->has("attenuationDistance")) return;
     const double distance = volume->number_or("attenuationDistance", 1, {0, 1e30, true});
     const Rgb color = this->color(*volume, "attenuationColor", {1, 1, 1});
-    s.interior = open_pbr_interior(color, static_cast<float>(distance));
+    s.interior = open_pbr_interior(color, static_cast<float>(std::max(distance, 1e-30)));
 }
 
 /// The extension's number is 20 over the Abbe number. Thin sheets do not refract, so they do not disperse either.
