@@ -88,4 +88,21 @@ size_t different_means(const PreparedCase& scene, const RenderSettings& a, const
     return compare(scene, a, other, b).different.size();
 }
 
+void expect_strategies_agree(const PreparedCase& scene, const RenderSettings& both) {
+    RenderSettings light = both, bsdf = both;
+    light.light_sampling = LightSampling::light;
+    bsdf.light_sampling = LightSampling::bsdf;
+    expect_same_means(scene, both, light);
+    expect_same_means(scene, both, bsdf);
+}
+
+void expect_roulette_keeps_the_mean(const PreparedCase& scene, RenderSettings often) {
+    RenderSettings never = often;
+    often.roulette_depth = 0;
+    never.roulette_depth = never.max_depth;
+    expect_same_means(scene, often, never);
+    often.samples_per_pixel = never.samples_per_pixel = 16;
+    EXPECT_LT(scene.render(often).statistics.bounce_rays, scene.render(never).statistics.bounce_rays);
+}
+
 }  // namespace steradian::analytic

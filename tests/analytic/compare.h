@@ -18,4 +18,9 @@ size_t different_means(const PreparedCase& scene, const RenderSettings& a, const
                        const RenderSettings& b);
 size_t different_means(const PreparedCase& scene, const RenderSettings& a, const RenderSettings& b);
 
+/// Light samples alone, and the directions that surfaces and media choose alone, against `both`.
+void expect_strategies_agree(const PreparedCase& scene, const RenderSettings& both);
+/// Russian roulette from the first bounce on against none; and that it takes place.
+void expect_roulette_keeps_the_mean(const PreparedCase& scene, RenderSettings often);
+
 }  // namespace steradian::analytic

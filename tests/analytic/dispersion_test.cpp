@@ -52,11 +52,7 @@ TEST(Dispersion, IsSeenByTheTestOfMeans) {
 /// Light samples and the BSDF's are weighed by densities for the path's wavelength.
 TEST(Dispersion, EveryStrategyHasTheSameMean) {
     const PreparedCase scene(gems(3).depth(2).str(), {});
-    RenderSettings both = independent(scene), light = both, bsdf = both;
-    light.light_sampling = LightSampling::light;
-    bsdf.light_sampling = LightSampling::bsdf;
-    expect_same_means(scene, both, light);
-    expect_same_means(scene, both, bsdf);
+    expect_strategies_agree(scene, independent(scene));
 }
 
 TEST(Dispersion, AtDepthOneDirectLightIsThatOfPaths) {
@@ -68,9 +64,7 @@ TEST(Dispersion, AtDepthOneDirectLightIsThatOfPaths) {
 
 TEST(Dispersion, RussianRouletteKeepsTheMean) {
     const PreparedCase scene(gems(3).depth(8).str(), {});
-    RenderSettings early = independent(scene), never = early;
-    early.roulette_depth = 0, never.roulette_depth = 100;
-    expect_same_means(scene, early, never);
+    expect_roulette_keeps_the_mean(scene, independent(scene));
 }
 
 /// A prism whose first face lies across the rays of an orthographic camera turns light at the second one only, by δ =

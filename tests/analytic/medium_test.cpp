@@ -106,19 +106,12 @@ SceneText fog() {
 
 TEST(Fog, LightSamplesAndPhaseFunctionAgree) {
     const PreparedCase scene(fog().depth(3).str(), {});
-    RenderSettings both = independent(scene), light = both, phase = both;
-    light.light_sampling = LightSampling::light;
-    phase.light_sampling = LightSampling::bsdf;
-    expect_same_means(scene, both, light);
-    expect_same_means(scene, both, phase);
+    expect_strategies_agree(scene, independent(scene));
 }
 
 TEST(Fog, RussianRouletteKeepsTheMean) {
     const PreparedCase scene(fog().str(), {});
-    RenderSettings often = independent(scene), never = often;
-    often.roulette_depth = 0;
-    never.roulette_depth = never.max_depth;
-    expect_same_means(scene, often, never);
+    expect_roulette_keeps_the_mean(scene, independent(scene));
 }
 
 }  // namespace

@@ -188,13 +188,7 @@ TEST(Paths, EveryWayToChooseALightHasTheSameMean) {
 
 TEST(Paths, RussianRouletteKeepsTheMean) {
     const PreparedCase scene(room().str(), {});
-    RenderSettings often = independent(scene), never = often;
-    often.roulette_depth = 0;
-    never.roulette_depth = never.max_depth;
-    expect_same_means(scene, often, never);
-    // And it takes place.
-    often.samples_per_pixel = never.samples_per_pixel = 16;
-    EXPECT_LT(scene.render(often).statistics.bounce_rays, scene.render(never).statistics.bounce_rays * 7 / 10);
+    expect_roulette_keeps_the_mean(scene, independent(scene));
 }
 
 TEST(Paths, RouletteBeyondTheDepthNeverStrikes) {
