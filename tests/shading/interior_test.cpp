@@ -9,8 +9,8 @@
 #include "shading/bsdf.h"
 #include "shading/bsdf/phase.h"
 #include "shading/shading_scene.h"
+#include "shading/world.h"
 #include "support/chi_square.h"
-#include "support/random.h"
 
 namespace steradian {
 namespace {
@@ -165,8 +165,7 @@ TEST(PhaseFunction, SamplesHaveItsDensity) {
             phase.lobe = PhaseBsdf{g};
             const auto draw = [&](uint64_t i) -> std::optional<Vec3> {
                 test::Random random(i);
-                const float x = random.unit_float(), y = random.unit_float();
-                return sample(phase, wo, 0, {x, y})->wi;
+                return sample(phase, wo, 0, random.uniform2())->wi;
             };
             const auto density = [&](Vec3 wi) { return static_cast<double>(eval(phase, wo, wi).pdf); };
             const test::ChiSquare result = test::chi_square_directions(draw, density, 200'000, 20, 20);

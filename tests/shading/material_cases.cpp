@@ -1,5 +1,7 @@
 #include "shading/material_cases.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -256,6 +258,16 @@ Vec3d refracted(Vec3 wo, Vec3 n, double eta) {
     const double ratio = outside ? 1 / eta : eta, cosine = dot(o, z),
                  squared = 1 - ratio * ratio * (1 - cosine * cosine);
     return squared > 0 ? z * (ratio * cosine - std::sqrt(squared)) - o * ratio : -o;
+}
+
+std::optional<Vec3> sampled_as_evaluated(const Bsdf& bsdf, Vec3 wo, Random& random) {
+    const float uc = random.uniform();
+    const auto s = sample(bsdf, wo, uc, random.uniform2());
+    if (!s) return std::nullopt;
+    const BsdfEval e = eval(bsdf, wo, s->wi);
+    EXPECT_EQ(s->pdf, e.pdf);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(s->weight[c] * s->pdf, e.f_cos[c], 1e-5f * e.f_cos[c] + 1e-12f);
+    return s->wi;
 }
 
 }  // namespace steradian::test

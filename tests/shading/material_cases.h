@@ -2,11 +2,13 @@
 // tests a new kind from the start: a test fails while a kind has no case.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shading/bsdf.h"
 #include "shading/shading_scene.h"
+#include "shading/world.h"
 
 namespace steradian::test {
 
@@ -62,5 +64,8 @@ Vec3d mirrored(Vec3 wo, Vec3 n);
 /// Where one looks through a flat boundary of index eta on the side that n does not point to; straight on where not at
 /// all.
 Vec3d refracted(Vec3 wo, Vec3 n, double eta);
+
+/// A direction of sample(), of which eval() says the same.
+std::optional<Vec3> sampled_as_evaluated(const Bsdf& bsdf, Vec3 wo, Random& random);
 
 }  // namespace steradian::test

@@ -314,13 +314,8 @@ TEST(Relief, SamplesOfFoldedLobesFollowTheirDensity) {
         // Half of the directions are uniform, so that no cell expects nothing: the surface cuts some into slivers.
         const auto sampled = [&](uint64_t) -> std::optional<Vec3> {
             if (random.bits() % 2 == 0) return static_cast<Vec3>(random.direction());
-            const float uc = random.uniform();
-            const auto s = sample(bsdf, wo, uc, random.uniform2());
-            if (!s) return std::nullopt;
-            const BsdfEval e = eval(bsdf, wo, s->wi);
-            EXPECT_EQ(s->pdf, e.pdf);
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(s->weight[c] * s->pdf, e.f_cos[c], 1e-5f * e.f_cos[c] + 1e-12f);
-            return static_cast<Vec3>(magnifier.magnified(s->wi));
+            const auto wi = sampled_as_evaluated(bsdf, wo, random);
+            return wi ? std::optional(static_cast<Vec3>(magnifier.magnified(*wi))) : std::nullopt;
         };
         const auto density = [&](Vec3 magnified) {
             const Vec3d m = normalize(Vec3d(magnified));
