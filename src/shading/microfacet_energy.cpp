@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "shading/bsdf/specular.h"
 #include "shading/fresnel.h"
 
@@ -148,6 +149,15 @@ Microfacets clamped(Vec2 alpha, float level) {
 
 }  // namespace
 
+std::vector<Vec3d> middle_azimuths(double range, size_t parts) {
+    std::vector<Vec3d> out(parts);
+    for (size_t i = 0; i < parts; ++i) {
+        const double phi = range * (double(i) + 0.5) / double(parts);
+        out[i] = {math::cos(phi), math::sin(phi), 0};
+    }
+    return out;
+}
+
 Microfacets microfacets(const Roughness& roughness, float texture) noexcept {
     if (!roughness.texture) return clamped(alphas(roughness, 1), 1);
     const float scale = clamp_to(texture, 0.0f, 1.0f);
@@ -187,37 +197,38 @@ void MicrofacetEnergy::fill(const TabulatedRoughness& roughness, Side side, cons
 
 template <class Albedo>
 void MicrofacetEnergy::fill_losses(const TabulatedRoughness& roughness, Side side, const Albedo& albedo) {
-    loss_.reserve(size_t(indices_) * size_t(sides_) * size_t(rows()) * size_t(azimuths_) * size_t(polar_));
-    for (int row = 0; row < rows(); ++row) {
-        const Microfacets m = at_row(roughness, row);
-        for (int azimuth = 0; azimuth < azimuths_; ++azimuth)
-            for (int polar = 0; polar < polar_; ++polar) {
-                const double c = cosine_from_polar(static_cast<double>(polar) / (polar_ - 1));
-                const double a = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
-                const double q = cosine_from_polar(a);
-                const Vec3d o = unstretched(stretch(m, side), max_of(c, 1e-6), q);
-                const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), o);
-                loss_.push_back(static_cast<float>(max_of(lost, 0.0)));
-            }
-    }
+    const size_t row_size = size_t(azimuths_) * size_t(polar_), before = loss_.size();
+    loss_.resize(before + size_t(rows()) * row_size);
+    parallel_for(loss_.size() - before, size_t(polar_), [&](size_t begin, size_t end) {
+        for (size_t entry = begin; entry < end; ++entry) {
+            const Microfacets m = at_row(roughness, static_cast<int>(entry / row_size));
+            const size_t azimuth = entry % row_size / size_t(polar_), polar = entry % size_t(polar_);
+            const double c = cosine_from_polar(static_cast<double>(polar) / (polar_ - 1));
+            const double a = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
+            const double q = cosine_from_polar(a);
+            const Vec3d o = unstretched(stretch(m, side), max_of(c, 1e-6), q);
+            const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), o);
+            loss_[before + entry] = static_cast<float>(max_of(lost, 0.0));
+        }
+    });
 }
 
 /// The mean of what the table says, so that what is added to it makes it whole.
 void MicrofacetEnergy::fill_means(const TabulatedRoughness& roughness, Side side, float index) {
-    for (int row = 0; row < rows(); ++row) {
-        const Microfacets m = at_row(roughness, row);
-        constexpr int kSteps = 256;
-        const int turns = azimuths_ == 1 ? 1 : 64;
+    constexpr int kSteps = 256;
+    const std::vector<Vec3d> turns = middle_azimuths(std::numbers::pi / 2, azimuths_ == 1 ? 1 : 64);
+    const size_t before = mean_.size();
+    mean_.resize(before + size_t(rows()));
+    parallel_for(size_t(rows()), 1, [&](size_t row, size_t) {
+        const Microfacets m = at_row(roughness, static_cast<int>(row));
         double sum = 0;
         for (int i = 0; i < kSteps; ++i)
-            for (int j = 0; j < turns; ++j) {
+            for (const Vec3d turn : turns) {
                 const double mu = (i + 0.5) / kSteps, s = std::sqrt((1 - mu) * (1 + mu));
-                const double phi = std::numbers::pi / 2 * (j + 0.5) / turns;
-                const Vec3d w{s * math::cos(phi), s * math::sin(phi), mu};
-                sum += 2 * mu * loss(m, w, side, index) / (kSteps * turns);
+                sum += 2 * mu * loss(m, {s * turn.x, s * turn.y, mu}, side, index) / (kSteps * double(turns.size()));
             }
-        mean_.push_back(static_cast<float>(sum));
-    }
+        mean_[before + row] = static_cast<float>(sum);
+    });
 }
 
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const TabulatedRoughness& roughness) {

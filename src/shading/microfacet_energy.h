@@ -54,6 +54,10 @@ struct TabulatedRoughness : Roughness {
     bool grains = false;
 };
 
+/// Unit vectors in the surface along the middles of `parts` equal parts of the azimuths 0 … range, for sums over
+/// directions.
+std::vector<Vec3d> middle_azimuths(double range, size_t parts);
+
 /// For one material: over the direction, and where the roughness is a texture, over its values.
 class MicrofacetEnergy {
 public:

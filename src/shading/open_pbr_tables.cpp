@@ -1,5 +1,8 @@
 #include "shading/open_pbr_tables.h"
 
+#include <algorithm>
+
+#include "base/parallel.h"
 #include "math/elementary.h"
 #include "shading/fresnel.h"
 
@@ -55,22 +58,21 @@ double eval_fuzz(double inverse, double scale, Vec3d wo, Vec3d wi) {
 FuzzTable::Level FuzzTable::make_level(double roughness) {
     const double inverse = fuzz_inverse(roughness);
     Level out;
-    constexpr int kSteps = 96;
-    double most = 0;
-    for (size_t entry = 0; entry < out.albedo.size(); ++entry) {
+    constexpr size_t kSteps = 96;
+    const std::vector<Vec3d> turns = middle_azimuths(std::numbers::pi, kSteps);
+    parallel_for(out.albedo.size(), 1, [&](size_t entry, size_t) {
         const double mu = max_of(from_entry(double(entry) / double(out.albedo.size() - 1)), 1e-4);
         const Vec3d wo{std::sqrt((1 - mu) * (1 + mu)), 0, mu};
         double sum = 0;
-        for (int i = 0; i < kSteps; ++i)
-            for (int j = 0; j < kSteps; ++j) {
-                const double t = (i + 0.5) / kSteps, z = t * t, s = std::sqrt((1 - z) * (1 + z));
-                const double phi = std::numbers::pi * (j + 0.5) / kSteps;
-                const Vec3d wi{s * math::cos(phi), s * math::sin(phi), z};
+        for (size_t i = 0; i < kSteps; ++i)
+            for (const Vec3d turn : turns) {
+                const double t = (double(i) + 0.5) / kSteps, z = t * t, s = std::sqrt((1 - z) * (1 + z));
+                const Vec3d wi{s * turn.x, s * turn.y, z};
                 sum += static_cast<float>(eval_fuzz(inverse, 1, wo, wi)) * 2 * t * 2 * std::numbers::pi;
             }
         out.albedo[entry] = sum / (kSteps * kSteps);
-        most = max_of(most, out.albedo[entry]);
-    }
+    });
+    const double most = *std::max_element(out.albedo.begin(), out.albedo.end());
     // This masking is not derived from the distribution, so nothing else keeps it from making energy.
     if (most > 1) {
         out.scale = 1 / most;
