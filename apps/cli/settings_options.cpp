@@ -159,6 +159,11 @@ Result<LoadOptions> load_options(const SettingsOptions& o, const std::string& sc
     out.animation = o.animation;
     out.frame_time = o.frame_time;
     out.turn = o.turn;
+    if (!o.size.empty()) {
+        Overrides said;
+        if (auto status = parse_size(o.size, said); !status) return std::move(status).error();
+        if (*said.width > 0 && *said.height > 0) out.aspect = double(*said.width) / *said.height;
+    }
     if (o.gltf_memory) out.gltf_free_bytes = *o.gltf_memory << 20;
     if (o.light_units == kLightUnits[1]) out.gltf_light_units = GltfLightUnits::photometric;
     EnvironmentOptions& environment = out.environment;

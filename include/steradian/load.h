@@ -36,6 +36,9 @@ struct LoadOptions {
     /// those of the scene, and chosen by its settings). What shines from far away and a bare model's studio stand still
     /// too.
     std::optional<double> turn = std::nullopt;
+    /// Width over height of the picture, for the camera of a model that has none and for that of `turn`: their model
+    /// spans the shorter side. Not set: of the scene's own settings.
+    std::optional<double> aspect = std::nullopt;
     uint64_t max_file_bytes = uint64_t(4) << 30;  ///< of one file
     ImageLimits images{};
     uint32_t max_depth = 256;  ///< of nested JSON

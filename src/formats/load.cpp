@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "formats/assets.h"
+#include "formats/framing.h"
 #include "formats/gltf/gltf.h"
 #include "formats/json/reader.h"
 #include "formats/scene_json/common.h"
@@ -68,6 +69,12 @@ Result<LoadedScene> read_json(std::string_view text, const std::string& name, co
     return loaded;
 }
 
+/// Of the picture that is to come: its width over its height.
+double aspect(const LoadedScene& loaded, const LoadOptions& options) {
+    const RenderSettings& s = loaded.settings;
+    return options.aspect.value_or(double(s.width) / max_of(s.height, 1u));
+}
+
 Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& options) {
     auto text = read_file(path, options.max_file_bytes);
     if (!text) return std::move(text).error();
@@ -75,7 +82,7 @@ Result<LoadedScene> load_json_file(const std::string& path, const LoadOptions& o
     if (!loaded) return loaded;
     loaded->files.insert(loaded->files.begin(), path);
     Assets assets(*loaded, {}, options);
-    if (options.turn) add_turntable_camera(*loaded, assets, *options.turn);
+    if (options.turn) add_turntable_camera(*loaded, assets, *options.turn, aspect(*loaded, options));
     return loaded;
 }
 
@@ -91,11 +98,12 @@ void complete(LoadedScene& loaded, Assets& assets, const LoadOptions& options) {
     const std::vector<Light>& lights = loaded.scene.lights;
     const bool dark = std::all_of(lights.begin(), lights.end(), is_decoration) && !options.environment.replace;
     const bool framed = loaded.scene.cameras.empty() || options.turn;
+    double turn = 0;  // of the camera about +Y
     if (options.turn)
-        add_turntable_camera(loaded, assets, *options.turn);
+        add_turntable_camera(loaded, assets, *options.turn, aspect(loaded, options)), turn = -*options.turn;
     else if (framed)
-        add_framing_camera(loaded, assets);
-    if (dark) add_studio(loaded, assets, framed, options.turn.value_or(0));
+        turn = add_framing_camera(loaded, assets, aspect(loaded, options));
+    if (dark) add_studio(loaded, assets, framed, turn);
 }
 
 void remove_environment(Scene& scene) {

@@ -171,5 +171,34 @@ TEST_F(AnimationCommand, ATurntableOfScenesOfEveryKind) {
     }
 }
 
+TEST_F(AnimationCommand, TheSizeDecidesHowTheModelIsFramed) {
+    spit(folder_.file("grid.ply"), grid_ply(4));
+    for (const std::vector<std::string>& view : {std::vector<std::string>{}, {"--turn", "30"}}) {
+        /// The columns that show something.
+        const auto columns = [&](const std::string& size) {
+            std::vector<std::string> all{"render", "grid.ply", "--size", size,           "--spp",
+                                         "4",      "--env",    "none",   "-o",           "d.pfm",
+                                         "-q",     "--filter", "box",    "--integrator", "depth"};
+            all.insert(all.end(), view.begin(), view.end());
+            EXPECT_EQ(steradian(all).code, 0);
+            const Image image = read_image(folder_.file("d.pfm")).value();
+            std::vector<uint32_t> out;
+            for (uint32_t x = 0; x < image.width; ++x)
+                for (uint32_t y = 0; y < image.height; ++y)
+                    if (image.pixels[(size_t(y) * image.width + x) * image.channels.size()] > 0) {
+                        out.push_back(x);
+                        break;
+                    }
+            return out;
+        };
+        const std::vector<uint32_t> square = columns("60x60"), high = columns("60x150");
+        ASSERT_FALSE(square.empty());
+        EXPECT_GT(square.front(), 2u);
+        EXPECT_LT(square.back(), 57u);
+        EXPECT_NEAR(high.front(), square.front(), 1);
+        EXPECT_NEAR(high.back(), square.back(), 1);
+    }
+}
+
 }  // namespace
 }  // namespace steradian::test

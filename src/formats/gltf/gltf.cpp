@@ -4,7 +4,6 @@
 #include "formats/gltf/container.h"
 #include "formats/gltf/nodes.h"
 #include "formats/gltf/unused.h"
-#include "formats/studio.h"
 
 namespace steradian::gltf {
 namespace {
