@@ -162,7 +162,7 @@ Bvh gathered(BinaryTree tree) {
     Bvh bvh;
     BuildMonitor monitor;
     LeafPrimitives primitives{tree.primitives};
-    gather(*tree.nodes, tree.root, primitives, monitor, bvh);
+    gather(*tree.nodes, tree.root, primitives, {}, monitor, bvh);
     return bvh;
 }
 

@@ -142,8 +142,10 @@ struct Subtree {
 void divide(std::span<BuildPrimitive> primitives, const Subtree& subtree, const BvhOptions& options,
             BuildMonitor& monitor, BinaryPool& pool, BinaryPool::Source& source, uint32_t out);
 
-/// Gathers a binary tree over `count` primitives into `out`, which is unfinished when cancelled; defined in gather.cpp.
-/// The primitives are gone before most of `out` is there, where their boxes are not needed.
-void gather(const BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out);
+/// Gathers a binary tree into `out`, which is unfinished when cancelled; defined in gather.cpp. The primitives are gone
+/// before most of `out` is there, where their boxes are not needed. Changes the tree where it would take more than it
+/// may.
+void gather(BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, const BvhOptions& options,
+            BuildMonitor& monitor, Bvh& out);
 
 }  // namespace steradian

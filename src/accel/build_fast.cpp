@@ -26,7 +26,7 @@ public:
     std::optional<uint32_t> run() {
         const uint32_t needed = static_cast<uint32_t>(std::bit_width(primitives_.size())) + kLevelsBelow;
         if (needed > options_.max_depth) return std::nullopt;
-        find_treelets();
+        if (!find_treelets()) return std::nullopt;
         monitor_.advance(primitives_.size() * kSortWork);
         if (monitor_.poll()) return std::nullopt;
         BvhOptions options = options_;
@@ -49,9 +49,11 @@ private:
         uint32_t node, depth;
     };
 
-    void find_treelets() {
+    /// False when most are so small that it would take too much memory for nothing.
+    bool find_treelets() {
         const MortonGrid grid(range_bounds(primitives_));
         firsts_ = sort_along_curve(primitives_, grid, kTreelet);
+        if (firsts_.size() - 1 > most_treelets(primitives_.size())) return false;
         treelets_.resize(firsts_.size() - 1);
         parallel_for(treelets_.size(), kTreeletChunk, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
@@ -59,6 +61,7 @@ private:
                 treelets_[i] = {box, static_cast<uint32_t>(i), ItemKind::instance};
             }
         });
+        return true;
     }
 
     void collect_leaves(uint32_t node, uint32_t depth) {

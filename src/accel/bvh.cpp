@@ -115,7 +115,7 @@ private:
         const bool last = depth >= options_.max_depth || (range.size() >= kLargeRange && monitor_.poll());
         const bool few = range.size() <= options_.max_leaf;
         ItemKind kind = options_.mostly;
-        if (last || few) {
+        if (last || few || options_.kinds_first) {
             const std::optional<ItemKind> only = only_kind(range);
             if (!only) return split_by_kind(range);
             kind = *only;
@@ -163,7 +163,7 @@ void build_high_quality(LargeArray<BuildPrimitive>& primitives, const BvhOptions
     if (monitor.poll()) return;
     const uint64_t all = count * options.work;
     reinsert(pool, root, options.max_depth, monitor, all - std::min(all, builder.reported()));
-    if (!monitor.poll()) gather(pool, root, leaves, monitor, out);
+    if (!monitor.poll()) gather(pool, root, leaves, options, monitor, out);
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ Bvh build_bvh(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options,
         divide(primitives, {0, primitives.size(), 0}, options, monitor, pool, source, *root);
     }
     LeafPrimitives leaves{primitives};
-    if (!monitor.poll()) gather(pool, *root, leaves, monitor, out);
+    if (!monitor.poll()) gather(pool, *root, leaves, options, monitor, out);
     return out;
 }
 

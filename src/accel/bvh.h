@@ -31,8 +31,6 @@ struct Bvh {
     Box bounds;
 };
 
-inline constexpr uint32_t kBlock = 4;
-
 /// What a primitive's way through the stages takes, in tenths of the whole, roughly as measured.
 inline constexpr uint64_t kReadWork = 1, kDivideWork = 6, kGatherWork = 2, kPackWork = 1;
 inline constexpr uint64_t kBuildWork = kReadWork + kDivideWork + kGatherWork + kPackWork;
@@ -43,6 +41,7 @@ struct BvhOptions {
     ItemKind mostly = ItemKind::block;  ///< the kind whose costs decide where many primitives are divided
     uint64_t work = kDivideWork;        ///< to report for a primitive once it is in a leaf
     uint32_t max_leaf = 8;     ///< primitives of a leaf that was not forced; overlapping boxes do not stay alone
+    bool kinds_first = false;  ///< ranges of several kinds are divided by kind before anything else
     bool split_boxes = false;  ///< BvhBuilder::high_quality may; not where rays are transformed, see SpatialSplit
     BvhLayout layout = BvhLayout::full;  ///< what is to be made of the hierarchy; it limits how much may be added
 };
@@ -52,7 +51,8 @@ struct BvhOptions {
 /// Uses all workers of the caller's arena; the result does not depend on their number. Check `monitor.poll()`
 /// afterwards: what a cancelled build returns is unfinished. Throws std::bad_alloc. At most max_items() boxes
 /// (compact.h), all of them finite; takes them. With split boxes a primitive may be in several leaves, and there are
-/// at most half as many again.
+/// at most half as many again. Nodes and what the leaves will hold take no more than most_tree_bytes() of what is in
+/// all leaves (tree_bytes.h).
 Bvh build_bvh(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options, BuildMonitor& monitor);
 
 }  // namespace steradian

@@ -7,6 +7,8 @@
 
 #include "accel/binary_tree.h"
 #include "accel/children.h"
+#include "accel/fuller.h"
+#include "accel/tree_bytes.h"
 #include "base/parallel.h"
 
 namespace steradian {
@@ -45,13 +47,19 @@ struct Places {
 
 struct Totals {
     uint32_t nodes = 0, blocks = 0, entries = 0, depth = 0;
-    uint32_t runs = 0;  ///< nodes over the runs of a leaf
+    uint32_t runs = 0;       ///< nodes over the runs of a leaf
+    uint32_t triangles = 0;  ///< in blocks
     uint64_t leaves = 0;
 
     void add(const Totals& t) {
         nodes += t.nodes, blocks += t.blocks, entries += t.entries, runs += t.runs, leaves += t.leaves;
+        triangles += t.triangles;
         depth = std::max(depth, t.depth);
     }
+    uint64_t bytes() const {
+        return nodes * sizeof(WideNode) + blocks * sizeof(TriangleBlock) + entries * sizeof(LeafEntry);
+    }
+    bool within_bounds() const { return bytes() <= most_tree_bytes(triangles, entries); }
 };
 
 /// What is below the children of a wide node that several workers fill; of smaller ones it need not be known.
@@ -65,28 +73,39 @@ public:
     Gatherer(const BinaryPool& pool, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out)
         : pool_(pool), primitives_(primitives), monitor_(monitor), out_(out) {}
 
-    void run(uint32_t root) {
+    /// Decides how, at the least expected cost with which it takes no more than it may. False when there is none.
+    bool choose(uint32_t root) {
         out_.bounds = pool_[root].box().box();
-        const Vec3 size = out_.bounds.hi - out_.bounds.lo;
-        const float scale = 1 / max_component(size);
+        const float scale = 1 / max_component(out_.bounds.hi - out_.bounds.lo);
         scale_ = Float4::all(is_finite(scale) ? scale : 0.0f);
+        choice_.resize(pool_.size());
+        const float cost = choose(root, 0);
+        if (monitor_.poll() || totals_.within_bounds()) return true;
+        // Bytes cost more and more, and in the end nothing else does.
+        const float cost_of_byte = cost / static_cast<float>(totals_.bytes());
+        for (const float factor : {0.01f, 0.03f, 0.1f, 0.3f, 1.0f, 3.0f}) {
+            if (!(cost_of_byte > 0)) break;
+            choose(root, factor * cost_of_byte);
+            if (monitor_.poll() || totals_.within_bounds()) return true;
+        }
+        scale_ = Float4::all(0);
+        choose(root, 1);
+        return totals_.within_bounds();
+    }
+    /// Another tree will be chosen.
+    void forget() { LargeArray<Choice>().swap(choice_); }
+
+    void run(uint32_t root) {
         // What was moved is reported with what it was moved from.
         const uint64_t work = primitives_.own.size();
-        choice_.resize(pool_.size());
-        float cost[kWidth - 1];
-        decide(root, cost);
         monitor_.advance(work);
-        if (monitor_.poll()) return;
-        std::unique_ptr<Plan> plan;
-        const Totals totals = count(root, 0, plan);
-        if (monitor_.poll()) return;
-        take_ids(totals.runs > 0);
-        out_.nodes.resize(totals.nodes);
-        out_.blocks.resize(size_t(totals.blocks) * kBlock);
-        out_.entries.resize(totals.entries);
-        out_.leaves = totals.leaves, out_.depth = totals.depth;
+        take_ids(totals_.runs > 0);
+        out_.nodes.resize(totals_.nodes);
+        out_.blocks.resize(size_t(totals_.blocks) * kBlock);
+        out_.entries.resize(totals_.entries);
+        out_.leaves = totals_.leaves, out_.depth = totals_.depth;
         Places at;
-        fill(root, at, plan.get());
+        fill(root, at, plan_.get());
         monitor_.advance((kGatherWork - 1) * work);
     }
 
@@ -101,38 +120,34 @@ private:
     bool is_leaf(uint32_t node) const { return pool_[node].is_leaf() || choice_[node].one_leaf(); }
     ItemKind kind_of(uint32_t leaf) const { return pool_[leaf].is_leaf() ? pool_[leaf].kind() : choice_[leaf].kind(); }
     static uint32_t item_size(ItemKind kind) { return kind == ItemKind::block ? kBlock : 1; }
+    float choose(uint32_t root, float cost_of_byte) {
+        cost_of_byte_ = cost_of_byte, cost_of_node_ = cost_of_byte * sizeof(WideNode);
+        float cost[kWidth - 1];
+        decide(root, cost);
+        plan_.reset();
+        totals_ = count(root, 0, plan_);
+        return cost[0];
+    }
     uint32_t primitives_below(uint32_t node) const {
         const BinaryNode& n = pool_[node];
         return n.is_leaf() ? n.end() - n.begin() : primitives_below(n.child(0)) + primitives_below(n.child(1));
     }
-    static uint32_t items_for(ItemKind kind, uint32_t primitives) {
-        const uint32_t size = item_size(kind);
-        return (primitives + size - 1) / size;
-    }
-    /// Nodes that it takes to gather a leaf's items, kMaxRun to a run and kWidth runs or nodes to a node.
-    static uint32_t nodes_for(uint32_t items) {
-        if (items <= ChildRef::kMaxRun) return 0;
-        const uint32_t share = share_of(items);
-        uint32_t nodes = 1;
-        for (uint32_t first = 0; first < items; first += share) nodes += nodes_for(std::min(share, items - first));
-        return nodes;
-    }
-    /// Items of each child of such a node: the least power of kWidth runs that makes do with kWidth children.
-    static uint32_t share_of(uint32_t items) {
-        uint32_t share = ChildRef::kMaxRun;
-        while (uint64_t(share) * kWidth < items) share *= kWidth;
-        return share;
-    }
 
-    /// Costs are surfaces (in units of the root's largest extent) times visits of nodes and tests of items; cost[i] is
-    /// the least one of the subtree in at most i + 1 of a wide node's children.
+    /// Of a leaf with such a surface.
+    float cost_of_leaf(float area, ItemKind kind, uint32_t primitives) const {
+        const float cost = area * leaf_cost(kind, primitives);
+        if (cost_of_byte_ == 0) return cost;
+        return cost + cost_of_byte_ * static_cast<float>(leaf_bytes(kind, primitives));
+    }
+    /// Costs are surfaces (in units of the root's largest extent) times visits of nodes and tests of items, and bytes
+    /// at their price; cost[i] is the least one of the subtree in at most i + 1 of a wide node's children.
     Decided decide(uint32_t index, float cost[kWidth - 1]) {
         const BinaryNode& node = pool_[index];
         const Box4 box = node.box();
         const float area = half_area((box.hi - box.lo) * scale_);
         if (node.is_leaf()) {
             const uint32_t primitives = node.end() - node.begin();
-            std::fill_n(cost, kWidth - 1, area * leaf_cost(node.kind(), primitives));
+            std::fill_n(cost, kWidth - 1, cost_of_leaf(area, node.kind(), primitives));
             return {primitives, node.kind(), true};
         }
         float left_cost[kWidth - 1], right_cost[kWidth - 1];
@@ -153,7 +168,8 @@ private:
                 if (sum < best[share]) best[share] = sum, best_left[share] = left;
             }
         }
-        const float as_leaf = area * leaf_cost(l.kind, both.primitives), as_node = area + best[kWidth];
+        const float as_leaf = cost_of_leaf(area, l.kind, both.primitives),
+                    as_node = area + cost_of_node_ + best[kWidth];
         const bool one_leaf = both.one_kind && both.primitives <= kMaxMergedLeaf &&
                               items_for(l.kind, both.primitives) <= ChildRef::kMaxRun && as_leaf <= as_node;
         Choice choice(one_leaf, l.kind);
@@ -210,9 +226,10 @@ private:
         return totals;
     }
     Totals count_leaf(uint32_t leaf, uint32_t depth) const {
-        const uint32_t items = items_for(kind_of(leaf), primitives_below(leaf)), nodes = nodes_for(items);
+        const uint32_t primitives = primitives_below(leaf);
+        const uint32_t items = items_for(kind_of(leaf), primitives), nodes = nodes_for(items);
         const bool blocks = kind_of(leaf) == ItemKind::block;
-        return {nodes, blocks ? items : 0, blocks ? 0 : items, depth, nodes, 1};
+        return {nodes, blocks ? items : 0, blocks ? 0 : items, depth, nodes, blocks ? primitives : 0, 1};
     }
 
     /// Of the primitives only their ids are needed from now on, and boxes where there are nodes over runs.
@@ -322,13 +339,23 @@ private:
     LargeArray<uint32_t> ids_;
     BuildMonitor& monitor_;
     Float4 scale_;
+    float cost_of_byte_ = 0, cost_of_node_ = 0;
+    Totals totals_;  ///< of what was chosen last
+    std::unique_ptr<Plan> plan_;
     Bvh& out_;
 };
 
 }  // namespace
 
-void gather(const BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, BuildMonitor& monitor, Bvh& out) {
-    Gatherer(pool, primitives, monitor, out).run(root);
+void gather(BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, const BvhOptions& options,
+            BuildMonitor& monitor, Bvh& out) {
+    Gatherer gatherer(pool, primitives, monitor, out);
+    if (!gatherer.choose(root)) {
+        gatherer.forget();
+        make_fuller(pool, root, primitives, options, monitor);
+        if (!monitor.poll()) gatherer.choose(root);
+    }
+    if (!monitor.poll()) gatherer.run(root);
 }
 
 }  // namespace steradian

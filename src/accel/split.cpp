@@ -29,9 +29,12 @@ Halves split_median(const Range& range, const RangeBounds& bounds) {
                              return ca < cb || (ca == cb && a.id < b.id);
                          });
     };
+    // Whole blocks to the left, so that at most one of all is not full in the end.
+    size_t left = range.size() / 2;
+    if (range.size() > kBlock) left = (left + kBlock - 1) / kBlock * kBlock;
     Halves halves;
-    // Rounded down and up, so that it is half of all.
-    halves.own = range.own.size() / 2, halves.added = (range.added.size() + 1) / 2;
+    halves.own = std::min(range.own.size() - range.own.size() / 2, left), halves.added = left - halves.own;
+    if (halves.added > range.added.size()) halves.added = range.added.size(), halves.own = left - halves.added;
     divide(range.own, halves.own), divide(range.added, halves.added);
     find_bounds(range, halves);
     return halves;

@@ -105,7 +105,7 @@ std::optional<ItemKind> only_kind(const Range& range);
 Halves split_by_kind(const Range& range);
 
 /// Reorders the range around the median of (centroid, id) along the widest axis of the centroids, what was added by
-/// itself: half are on the left.
+/// itself: half are on the left, rounded up to whole blocks where there are more than one.
 Halves split_median(const Range& range, const RangeBounds& bounds);
 
 /// The binned surface-area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").

@@ -6,6 +6,8 @@
 namespace steradian {
 
 inline constexpr uint32_t kWidth = 8;
+/// Triangles of a block.
+inline constexpr uint32_t kBlock = 4;
 
 /// What leaves hold.
 enum class ItemKind : uint32_t { block, shape, instance };

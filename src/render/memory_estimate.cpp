@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "accel/build_memory.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "render/film.h"
@@ -17,29 +18,29 @@
 namespace steradian {
 namespace {
 
-/// Of the hierarchy, measured on meshes of one to three million triangles (a fifth of the bytes are the nodes, the
-/// rest the packed triangles) and on a million spheres that are a geometry each. `build` comes on top for a while.
-struct TriangleBytes {
-    uint64_t held, build;
-};
-constexpr TriangleBytes kSah{55, 4}, kMedian{66, 5}, kFast{56, 4}, kHighQuality{57, 4};
-constexpr TriangleBytes kCompact{30, 28};
-constexpr uint64_t kShapeBytes = 280, kShapeBuildBytes = 40;
-constexpr uint64_t kInstanceBytes = 210, kInstanceBuildBytes = 240;
-
-TriangleBytes triangle_bytes(const Execution& execution) {
-    const bool compact = execution.bvh_layout == BvhLayout::compact;
-    switch (execution.bvh) {
-        case BvhBuilder::high_quality:
-            return compact ? kCompact : kHighQuality;
-        case BvhBuilder::median:
-            return compact ? kCompact : kMedian;
-        case BvhBuilder::fast:
-            return compact ? kCompact : kFast;
-        case BvhBuilder::sah:
-            break;
+/// Of the hierarchy. Ids may be wrong: nothing has checked the scene yet. Transforms of what is used once will be
+/// baked.
+BuildMemory hierarchy_memory(const Scene& scene, const Execution& execution) {
+    constexpr SphereGeometry kShape;
+    std::vector<Geometry> geometries;
+    for (const Shape& shape : scene.shapes) {
+        const auto* mesh = std::get_if<MeshId>(&shape);
+        if (!mesh) {
+            geometries.push_back(std::span(&kShape, 1));
+        } else if (index(*mesh) < scene.meshes.size()) {
+            const Mesh& m = scene.meshes[index(*mesh)];
+            geometries.push_back(TriangleGeometry{m.positions, m.indices});
+        } else {
+            geometries.push_back(TriangleGeometry{});
+        }
     }
-    return compact ? kCompact : kSah;
+    std::vector<GeometryInstance> instances;
+    for (const Instance& i : scene.instances)
+        if (index(i.shape) < geometries.size()) instances.push_back({index(i.shape), {}});
+    AccelOptions options;
+    options.builder = execution.bvh, options.layout = execution.bvh_layout;
+    options.max_depth = execution.bvh_max_depth;
+    return expected_build_memory(geometries, instances, options);
 }
 
 template <class T>
@@ -106,20 +107,15 @@ uint64_t mesh_bytes(const Mesh& m) {
 }
 
 MemoryEstimate estimate_memory(const Scene& scene, const RenderSettings& settings, const Execution& execution) {
-    uint64_t triangles = 0, shapes = 0;
-    for (const Mesh& mesh : scene.meshes) triangles += mesh.indices.size() / 3;
-    for (const Shape& shape : scene.shapes) shapes += !std::holds_alternative<MeshId>(shape);
-    const uint64_t instances = scene.instances.size();
     MemoryEstimate out;
     out.scene = scene_bytes(scene);
-    const TriangleBytes triangle = triangle_bytes(execution);
-    out.hierarchy = triangles * triangle.held + shapes * kShapeBytes + instances * kInstanceBytes +
-                    instances * sizeof(ShadingScene::InstanceData) +
+    const BuildMemory hierarchy = hierarchy_memory(scene, execution);
+    out.hierarchy = hierarchy.result + scene.instances.size() * sizeof(ShadingScene::InstanceData) +
                     scene.lights.size() * (sizeof(ShadingScene::LightData) + sizeof(double)) +
                     LightTree::bytes(scene.lights.size());
     for (const Light& light : scene.lights) out.hierarchy += table_bytes(scene, light);
     out.hierarchy += mip_map_bytes(scene);
-    out.build = triangles * triangle.build + shapes * kShapeBuildBytes + instances * kInstanceBuildBytes;
+    out.build = hierarchy.peak - hierarchy.result;
     out.picture = picture_bytes(settings, execution);
     return out;
 }

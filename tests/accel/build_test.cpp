@@ -27,8 +27,9 @@ TestScene scene_of(const std::string& name, TriangleMesh mesh) {
 
 std::vector<TestScene> abuse(int count) {
     std::vector<TestScene> scenes;
-    TriangleMesh same, centroids, nested, points, line;
+    TriangleMesh same, centroids, nested, points, line, fives;
     Random random(5);
+    Vec3 cluster;
     for (int i = 0; i < count; ++i) {
         same.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         // Boxes around the origin, of very different sizes, all with the same centroid.
@@ -41,12 +42,17 @@ std::vector<TestScene> abuse(int count) {
         points.add(p, p, p);
         const auto x = static_cast<float>(i);
         line.add({x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0});
+        // As leaves these would take too much memory, so that nodes are gathered, and subtrees divided, in another way.
+        if (i % 5 == 0) cluster = random.in_cube(1000);
+        const Vec3 q = cluster + random.in_cube(0.1f);
+        fives.add(q, q + random.in_cube(0.1f), q + random.in_cube(0.1f));
     }
     scenes.push_back(scene_of("coincident triangles", std::move(same)));
     scenes.push_back(scene_of("coincident centroids", std::move(centroids)));
     scenes.push_back(scene_of("exponentially nested", std::move(nested)));
     scenes.push_back(scene_of("points", std::move(points)));
     scenes.push_back(scene_of("a long line", std::move(line)));
+    scenes.push_back(scene_of("clusters of five", std::move(fives)));
     return scenes;
 }
 
