@@ -108,8 +108,8 @@ void fit_width(PerspectiveCamera& camera, double aspect) {
     camera.vertical_fov = static_cast<float>(math::atan2(slope, 1) * (360 / std::numbers::pi));
 }
 
-/// As framing_camera, where everything goes round the vertical through the middle: of a point at the distance r and the height h
-/// the most along a vector v is then h v.y + r |(v.x, v.z)|.
+/// As framing_camera, where everything goes round the vertical through the middle: of a point at the distance r and the
+/// height h the most along a vector v is then h v.y + r |(v.x, v.z)|.
 PerspectiveCamera frame_turning(const Scene& scene, const Extent& extent, const ViewAxes& axes, double slope) {
     double side = -kInfinity, high = side, low = side, depth = side;
     each_ball(scene, [&](Vec3d p, double radius) {
@@ -131,8 +131,8 @@ PerspectiveCamera frame_turning(const Scene& scene, const Extent& extent, const 
 
 }  // namespace
 
-// A vertex along an axis a of the picture with coordinate p and depth z is inside when |p - c| <= slope (d - z), so that
-// the largest p + slope z and -p + slope z give the place c and the distance d.
+// A vertex along an axis a of the picture with coordinate p and depth z is inside when |p - c| <= slope (d - z), so
+// that the largest p + slope z and -p + slope z give the place c and the distance d.
 PerspectiveCamera framing_camera(const Scene& scene, const Extent& extent, const ViewAxes& axes) {
     const double slope = framed_slope();
     Vec3d high{-kInfinity, -kInfinity, -kInfinity}, low = high;

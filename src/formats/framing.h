@@ -38,9 +38,9 @@ constexpr Vec3d kUsualView{0.5, 0.42, 1};
 /// About +Y, counter-clockwise seen from above.
 Vec3d turned(Vec3d v, double degrees);
 
-/// From the direction of `axes`, through the long lens that all cameras here have (25° across a square picture), from the
-/// nearest place where a square picture holds every vertex with 14 % to spare. Of meshes that several objects share the
-/// corners of their boxes count, of all others every vertex.
+/// From the direction of `axes`, through the long lens that all cameras here have (25° across a square picture), from
+/// the nearest place where a square picture holds every vertex with 14 % to spare. Of meshes that several objects share
+/// the corners of their boxes count, of all others every vertex.
 PerspectiveCamera framing_camera(const Scene& scene, const Extent& extent, const ViewAxes& axes);
 
 /// Adds one that looks from where a model shows itself (front_view.h). A picture that is `aspect` times as wide as high

@@ -23,8 +23,8 @@ struct Candidate {
 };
 constexpr int kPreferUsualHeight = 2;
 
-/// Level views are for boxes that are open at a side: from higher up their lids would be in the way; those from above are
-/// for rooms without a ceiling.
+/// Level views are for boxes that are open at a side: from higher up their lids would be in the way; those from above
+/// are for rooms without a ceiling.
 std::vector<Candidate> candidates() {
     constexpr Vec3d kLevel{0, 0, 1}, kAbove{0.5, 1.5, 1};
     std::vector<Candidate> out;
@@ -78,7 +78,8 @@ private:
         bool front = false;
     };
 
-    /// To the right and upwards in pixels, and 1 / depth, which is linear in them; 0 for what is not in front of the eye.
+    /// To the right and upwards in pixels, and 1 / depth, which is linear in them; 0 for what is not in front of the
+    /// eye.
     Vec3d project(Vec3d world) const {
         const Vec3d q = world - eye_;
         const double nearness = -1 / dot(q, axes_.back);
@@ -90,14 +91,15 @@ private:
     /// The pixels whose middle lies in the range.
     static std::array<int, 2> pixels_between(double lo, double hi) {
         const double first = std::ceil(lo - 0.5), last = std::floor(hi - 0.5);
-        return {static_cast<int>(clamp_to(first, 0.0, double(kSize))), static_cast<int>(clamp_to(last, -1.0, kSize - 1.0))};
+        return {static_cast<int>(clamp_to(first, 0.0, double(kSize))),
+                static_cast<int>(clamp_to(last, -1.0, kSize - 1.0))};
     }
 
     void draw(const std::array<Vec3d, 3>& v, bool mirrored) {
-        const auto [x0, x1] = pixels_between(min_of(min_of(v[0].x, v[1].x), v[2].x),
-                                             max_of(max_of(v[0].x, v[1].x), v[2].x));
-        const auto [y0, y1] = pixels_between(min_of(min_of(v[0].y, v[1].y), v[2].y),
-                                             max_of(max_of(v[0].y, v[1].y), v[2].y));
+        const auto [x0, x1] =
+            pixels_between(min_of(min_of(v[0].x, v[1].x), v[2].x), max_of(max_of(v[0].x, v[1].x), v[2].x));
+        const auto [y0, y1] =
+            pixels_between(min_of(min_of(v[0].y, v[1].y), v[2].y), max_of(max_of(v[0].y, v[1].y), v[2].y));
         if (x0 > x1 || y0 > y1) return;
         const auto tries = static_cast<uint64_t>((x1 - x0 + 1) * (y1 - y0 + 1));
         tries_ -= min_of(tries, tries_);

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
-#include <numeric>
 
 #include "lint/place_hash.h"
+#include "lint/union_find.h"
 #include "math/ray.h"
 
 namespace steradian::lint_detail {
@@ -29,22 +28,6 @@ private:
     static constexpr uint32_t kEmpty = 0xffffffffu;
     const Mesh& mesh_;
     std::vector<uint32_t> table_;
-};
-
-class UnionFind {
-public:
-    explicit UnionFind(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t find(uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = find(a), b = find(b);
-        parent_[max_of(a, b)] = min_of(a, b);
-    }
-
-private:
-    std::vector<uint32_t> parent_;
 };
 
 struct Side {
@@ -114,37 +97,6 @@ Topology topology_of(const Mesh& mesh) {
         while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
         settle(sides.data() + begin, sides.data() + end, out);
     }
-    return out;
-}
-
-std::vector<Hole> holes_of(const Mesh& mesh, const std::vector<LooseEdge>& loose) {
-    std::map<uint32_t, uint32_t> number_of;
-    for (const LooseEdge& edge : loose)
-        for (const uint32_t v : {edge.a, edge.b}) number_of.emplace(v, static_cast<uint32_t>(number_of.size()));
-    UnionFind rims(number_of.size());
-    for (const LooseEdge& edge : loose) rims.join(number_of[edge.a], number_of[edge.b]);
-
-    struct Rim {
-        Hole hole;
-        Vec3d origin, area;  ///< twice the vector area, about the first vertex
-        double length_squared = 0;
-    };
-    std::map<uint32_t, size_t> rim_of;
-    std::vector<Rim> all;
-    for (const LooseEdge& edge : loose) {
-        const Vec3d a(mesh.positions[edge.a]), b(mesh.positions[edge.b]);
-        const auto [found, added] = rim_of.emplace(rims.find(number_of[edge.a]), all.size());
-        if (added) all.push_back({{0, a, b}, a, {}});
-        Rim& rim = all[found->second];
-        ++rim.hole.edges;
-        rim.area = rim.area + cross(a - rim.origin, b - rim.origin);
-        rim.length_squared += dot(b - a, b - a);
-    }
-    // Rounding of coordinates moves the vertices of a seam off its line, by up to some 1e-7 of its length.
-    constexpr double kCrack = 1e-5;
-    std::vector<Hole> out;
-    for (const Rim& rim : all)
-        if (length(rim.area) > kCrack * rim.length_squared) out.push_back(rim.hole);
     return out;
 }
 

@@ -32,14 +32,6 @@ struct Topology {
 /// Takes 12 bytes a triangle as long as it is kept, and 60 while it is made.
 Topology topology_of(const Mesh& mesh);
 
-/// What of the loose edges encloses an area: the gaps that are left where edges lie on each other without sharing
-/// vertices let nothing through. In the order of their first edge.
-struct Hole {
-    uint64_t edges = 0;
-    Vec3d from, to;  ///< its first edge
-};
-std::vector<Hole> holes_of(const Mesh& mesh, const std::vector<LooseEdge>& loose);
-
 /// Triangles that hang together, numbered in order of their first ones; of those left out 0.
 struct Components {
     std::vector<uint32_t> of_triangle;

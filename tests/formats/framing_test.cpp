@@ -39,7 +39,8 @@ Reach reach_of(const Scene& scene, const PerspectiveCamera& camera, double aspec
     for (const Instance& i : scene.instances) {
         const Shape& shape = scene.shapes[index(i.shape)];
         if (const auto* id = std::get_if<MeshId>(&shape))
-            for (const Vec3& p : scene.meshes[index(*id)].positions) add(transform_point(i.world_from_object, Vec3d(p)));
+            for (const Vec3& p : scene.meshes[index(*id)].positions)
+                add(transform_point(i.world_from_object, Vec3d(p)));
     }
     return out;
 }
@@ -74,7 +75,8 @@ std::string soup(Random& random, int count, Vec3d size, Vec3d middle) {
     for (int i = 0; i < 3 * count; ++i)
         text += "v" + coordinate(size.x, middle.x) + coordinate(size.y, middle.y) + coordinate(size.z, middle.z) + "\n";
     for (int i = 0; i < count; ++i)
-        text += "f " + std::to_string(3 * i + 1) + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
+        text +=
+            "f " + std::to_string(3 * i + 1) + " " + std::to_string(3 * i + 2) + " " + std::to_string(3 * i + 3) + "\n";
     return text;
 }
 
@@ -88,7 +90,8 @@ TEST_F(Framing, NoPictureOfATurntableCutsTheModel) {
             EXPECT_LE(most.across, kFilled + 1e-4) << aspect;
             EXPECT_LE(most.up, kFilled + 1e-4) << aspect;
             // The square in the middle of the picture is filled, one way or the other, but for angles between pictures.
-            const double filled = aspect < 1 ? std::max(most.across, most.up / aspect) : std::max(most.across * aspect, most.up);
+            const double filled =
+                aspect < 1 ? std::max(most.across, most.up / aspect) : std::max(most.across * aspect, most.up);
             EXPECT_GT(filled, 0.8) << aspect;
         }
     }
