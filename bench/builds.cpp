@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "base/parallel.h"
@@ -57,7 +58,10 @@ Builder embree_builder(const BenchMesh& mesh, const std::string& name, const Emb
 
 std::optional<Error> measure_builds(const BenchMesh& mesh, const Options& options, std::vector<BuildRow>& rows) {
     std::vector<Builder> builders;
-    for (const OurSetting& setting : our_settings()) builders.push_back(our_builder(mesh, setting));
+    for (const OurSetting& setting : our_settings())
+        if (options.builds.empty() ||
+            std::find(options.builds.begin(), options.builds.end(), setting.name) != options.builds.end())
+            builders.push_back(our_builder(mesh, setting));
     if (!options.only_ours) {
         // With the instruction set that Embree itself chooses.
         builders.push_back(embree_builder(mesh, "Embree medium", {"default", false, false}));

@@ -94,6 +94,7 @@ const std::vector<Option>& table() {
         {"--build-repetitions", "N", "of every build (3)", number<int>(&Options::build_repetitions, 1, 1000)},
         {"--trials", "N", "repetitions with which each setting of Embree is tried (3)",
          number<int>(&Options::trials, 1, 1000)},
+        {"--builds", "NAMES", "build with these settings of ours (all)", names(&Options::builds, our_names)},
         {"--only-ours", "", "leave Embree out", flag(&Options::only_ours)},
         {"--json", "FILE", "write every figure there as well", text(&Options::json)},
         {"--study", "FILE", "instead: rays per second and build times over triangle counts, as CSV for plot.py",

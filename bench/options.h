@@ -12,6 +12,7 @@ struct Options {
     std::vector<std::string> meshes;  ///< names or files; empty: all generated ones
     std::vector<std::string> rays;    ///< names of ray sets; empty: all
     std::vector<std::string> ours;    ///< names of our settings; empty: the default one
+    std::vector<std::string> builds;  ///< those of our settings that are built for their times; empty: all
     std::vector<std::string> parts;   ///< of part_names; empty: all
     int repetitions = 0, build_repetitions = 0, trials = 0;
     uint32_t size = 0;      ///< of the picture, pixels

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "accel/binary_tree.h"
 
@@ -15,7 +14,7 @@ namespace steradian {
 /// Pantaleoni & McAllister 2011, "Simpler and Faster HLBVH with Work Queues"), and each of them. Nothing is moved along
 /// all the levels in between. Same promises as build_bvh; options.builder is not looked at. The root; without one when
 /// options.max_depth is too small for that, or there were more than most_treelets(), or when cancelled.
-std::optional<uint32_t> build_fast(std::span<BuildPrimitive> primitives, const BvhOptions& options, BinaryPool& pool,
+std::optional<uint32_t> build_fast(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options, BinaryPool& pool,
                                    BuildMonitor& monitor);
 
 /// With more of them they would take too much memory for nothing: they are hardly larger than leaves then.

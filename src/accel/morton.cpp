@@ -16,9 +16,6 @@ constexpr size_t kChunk = 16384;
 constexpr size_t kSmall = 2048;
 constexpr uint32_t kDigitBits = 8, kSmallDigitBits = 5;
 
-/// What is cut off is sorted further, down to so few, since what is nearly in order is divided faster.
-constexpr size_t kNearly = 8;
-
 using Firsts = std::vector<uint32_t>;
 
 /// How many primitives have each digit, and in which bits of the code they differ.
@@ -75,29 +72,36 @@ uint32_t low_bit(uint32_t high, uint32_t bits) { return high > bits ? high - bit
 /// Sort").
 class CurveSorter {
 public:
-    CurveSorter(std::span<BuildPrimitive> primitives, const MortonGrid& grid, uint32_t most)
-        : primitives_(primitives),
+    CurveSorter(LargeArray<BuildPrimitive>& primitives, const MortonGrid& grid, uint32_t most, bool may_copy)
+        : all_(primitives),
+          primitives_(primitives),
           digit_(primitives.size() > kSmall ? primitives.size() : 0),
           grid_(grid),
-          most_(most) {}
+          most_(most),
+          may_copy_(may_copy) {}
 
     /// A range whose codes are the same from bit `high` on.
     void sort(uint32_t begin, uint32_t end, uint32_t high, Firsts& firsts) {
         if (end - begin <= kSmall) return sort_small(begin, end, firsts);
         if (high == 0) return cut_by_place(begin, end, firsts);
-        Large counts = count(begin, end, low_bit(high, kDigitBits));
+        std::vector<Large> of_chunks;
+        Large counts = count(begin, end, low_bit(high, kDigitBits), of_chunks);
         // Where the digit says nothing, from the first bit that does.
         if (counts.of[digit_[begin]] == end - begin) {
             high = static_cast<uint32_t>(std::bit_width(counts.differ));
             if (high == 0) return cut_by_place(begin, end, firsts);
-            counts = count(begin, end, low_bit(high, kDigitBits));
+            counts = count(begin, end, low_bit(high, kDigitBits), of_chunks);
         }
         const Digits<kDigitBits> digits(counts, begin);
-        digits.sort([&](uint32_t i) { return digit_[i]; },
-                    [&](uint32_t i, uint32_t j) {
-                        std::swap(primitives_[i], primitives_[j]);
-                        std::swap(digit_[i], digit_[j]);
-                    });
+        if (may_copy_ && end - begin == all_.size() && !of_chunks.empty()) {
+            copy_in_order(digits, of_chunks);
+        } else {
+            digits.sort([&](uint32_t i) { return digit_[i]; },
+                        [&](uint32_t i, uint32_t j) {
+                            std::swap(primitives_[i], primitives_[j]);
+                            std::swap(digit_[i], digit_[j]);
+                        });
+        }
         std::vector<std::pair<uint32_t, uint32_t>> parts;
         digits.cut(0, Large::kDigits, most_, [&](uint32_t b, uint32_t e) { parts.emplace_back(b, e); });
         std::vector<Firsts> of_parts(parts.size());
@@ -119,8 +123,25 @@ private:
         for (uint32_t i = begin; i < end; i += most_) firsts.push_back(i);
     }
 
-    /// Notes the digits from bit `low` on.
-    Large count(uint32_t begin, uint32_t end, uint32_t low) {
+    /// All primitives to where their digits are, by all workers.
+    void copy_in_order(const Digits<kDigitBits>& digits, const std::vector<Large>& of_chunks) {
+        std::vector<std::array<uint32_t, Large::kDigits>> first(of_chunks.size());
+        for (uint32_t d = 0; d < Large::kDigits; ++d) {
+            uint32_t place = digits.begin(d);
+            for (size_t chunk = 0; chunk < of_chunks.size(); ++chunk)
+                first[chunk][d] = place, place += of_chunks[chunk].of[d];
+        }
+        LargeArray<BuildPrimitive> sorted(all_.size());
+        parallel_for(all_.size(), kChunk, [&](size_t begin, size_t end) {
+            std::array<uint32_t, Large::kDigits>& next = first[begin / kChunk];
+            for (size_t i = begin; i < end; ++i) sorted[next[digit_[i]]++] = all_[i];
+        });
+        all_.swap(sorted);
+        primitives_ = all_;
+    }
+
+    /// Notes the digits from bit `low` on. `of_chunks` are the counts of the chunks, if there are any.
+    Large count(uint32_t begin, uint32_t end, uint32_t low, std::vector<Large>& of_chunks) {
         const uint64_t first = grid_.code(primitives_[begin]);
         const auto count_some = [&](size_t from, size_t to, Large& counts) {
             for (size_t i = from; i < to; ++i) {
@@ -135,29 +156,24 @@ private:
             count_some(begin, end, all);
             return all;
         }
-        std::vector<Large> parts((end - begin + kChunk - 1) / kChunk);
+        of_chunks.assign((end - begin + kChunk - 1) / kChunk, Large());
         parallel_for(end - begin, kChunk,
-                     [&](size_t b, size_t e) { count_some(begin + b, begin + e, parts[b / kChunk]); });
-        for (const Large& part : parts) all.add(part);
+                     [&](size_t b, size_t e) { count_some(begin + b, begin + e, of_chunks[b / kChunk]); });
+        for (const Large& part : of_chunks) all.add(part);
         return all;
     }
 
     void sort_small(uint32_t begin, uint32_t end, Firsts& firsts) const {
         uint64_t codes[kSmall];
         for (uint32_t i = begin; i < end; ++i) codes[i - begin] = grid_.code(primitives_[i]);
-        sort_small(begin, end, codes, &firsts);
+        sort_small(begin, end, codes, firsts);
     }
-    /// `firsts` as long as nothing is cut off.
-    void sort_small(uint32_t begin, uint32_t end, uint64_t* codes, Firsts* firsts) const {
+    void sort_small(uint32_t begin, uint32_t end, uint64_t* codes, Firsts& firsts) const {
         const uint32_t size = end - begin;
-        if (firsts && size <= most_) firsts->push_back(begin), firsts = nullptr;
-        if (size <= kNearly) return;
+        if (size <= most_) return firsts.push_back(begin);
         uint64_t differ = 0;
         for (uint32_t i = 1; i < size; ++i) differ |= codes[i] ^ codes[0];
-        if (differ == 0) {
-            if (firsts) cut_by_place(begin, end, *firsts);
-            return;
-        }
+        if (differ == 0) return cut_by_place(begin, end, firsts);
         const uint32_t low = low_bit(static_cast<uint32_t>(std::bit_width(differ)), kSmallDigitBits);
         const auto digit_of = [&](uint32_t i) {
             return static_cast<uint32_t>(codes[i - begin] >> low) & (Small::kDigits - 1);
@@ -169,14 +185,16 @@ private:
             std::swap(primitives_[i], primitives_[j]);
             std::swap(codes[i - begin], codes[j - begin]);
         });
-        digits.cut(0, Small::kDigits, firsts ? most_ : 1,
+        digits.cut(0, Small::kDigits, most_,
                    [&](uint32_t b, uint32_t e) { sort_small(b, e, codes + (b - begin), firsts); });
     }
 
+    LargeArray<BuildPrimitive>& all_;
     std::span<BuildPrimitive> primitives_;
     LargeArray<uint8_t> digit_;
     const MortonGrid& grid_;
     const uint32_t most_;
+    const bool may_copy_;
 };
 
 }  // namespace
@@ -189,10 +207,11 @@ MortonGrid::MortonGrid(const RangeBounds& bounds) {
     scale_ = extent > 0 ? double(1u << kAxisBits) / extent : 0;
 }
 
-std::vector<uint32_t> sort_along_curve(std::span<BuildPrimitive> primitives, const MortonGrid& grid, uint32_t most) {
+std::vector<uint32_t> sort_along_curve(LargeArray<BuildPrimitive>& primitives, const MortonGrid& grid, uint32_t most,
+                                       bool may_copy) {
     Firsts firsts;
     const auto count = static_cast<uint32_t>(primitives.size());
-    if (count > 0) CurveSorter(primitives, grid, most).sort(0, count, 3 * MortonGrid::kAxisBits, firsts);
+    if (count > 0) CurveSorter(primitives, grid, most, may_copy).sort(0, count, 3 * MortonGrid::kAxisBits, firsts);
     firsts.push_back(count);
     return firsts;
 }

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "accel/split.h"
+#include "base/large_array.h"
 
 namespace steradian {
 
@@ -44,11 +44,12 @@ private:
     double scale_;
 };
 
-/// Brings primitives nearly into the order of their codes, and says where the runs of up to `most` of them begin that
-/// are the largest subtrees of the radix tree over the codes which fit (codes that are all the same are cut by place):
-/// in ascending order, and where the last one ends. Between these runs the order is that of the codes. In place: beside
-/// the primitives there is a byte for each of them. Uses all workers of the caller's arena; the result does not depend
-/// on their number. Throws std::bad_alloc.
-std::vector<uint32_t> sort_along_curve(std::span<BuildPrimitive> primitives, const MortonGrid& grid, uint32_t most);
+/// Brings primitives into such an order of their codes that the largest subtrees of the radix tree over the codes with
+/// up to `most` of them follow each other, each in no order, and says where they begin, in ascending order, and where
+/// the last one ends (codes that are all the same are cut by place). In place: beside the primitives there is a byte
+/// for each of them; or, with `may_copy`, by way of a copy of all, which more workers than one can make. Uses all
+/// workers of the caller's arena; the result does not depend on their number. Throws std::bad_alloc.
+std::vector<uint32_t> sort_along_curve(LargeArray<BuildPrimitive>& primitives, const MortonGrid& grid, uint32_t most,
+                                       bool may_copy);
 
 }  // namespace steradian
