@@ -82,8 +82,9 @@ struct LoadedScene {
     Diagnostics diagnostics;
     /// What the file asks for and the picture will not show, or show differently.
     Diagnostics fidelity;
-    /// What the file has and nothing in it uses; looked for where LoadOptions::locations asks for that. Of what is in
-    /// the scene as well, lint (lint.h) says it.
+    /// What the file has and nothing in it uses or what changes nothing (with the rule of lint, lint.h, that says so);
+    /// of glTF files looked for where LoadOptions::locations asks for that. Of what is in the scene as well, lint says
+    /// it.
     Diagnostics unused = {};
     /// Where LoadOptions::locations asked for them.
     SceneLocations locations = {};

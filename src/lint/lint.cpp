@@ -124,7 +124,7 @@ void add_reader_warnings(const LoadedScene& loaded, Findings& findings) {
     for (const Warning& w : loaded.fidelity.warnings())
         findings.add(Rule::not_honoured, std::nullopt, w.message, {}, w.where, w.count);
     for (const Warning& w : loaded.unused.warnings())
-        findings.add(Rule::unused, std::nullopt, w.message, {}, w.where, w.count);
+        findings.add(rule_called(w.rule).value_or(Rule::unused), std::nullopt, w.message, {}, w.where, w.count);
 }
 
 }  // namespace

@@ -174,10 +174,10 @@ private:
         out.most_y = max_of(max_of(out.p[0].y, out.p[1].y), out.p[2].y);
         return out;
     }
-    /// Two equal surfaces look like one.
+    /// Two equal surfaces look like one, and so do pieces of the same object.
     bool differ(uint32_t a, uint32_t b) const {
         const MaterialId first = scene_.instances[a].material, second = scene_.instances[b].material;
-        return a != b && first != second && !ordered(scene_, first, second);
+        return first != second && !ordered(scene_, first, second);
     }
 
     void look(const Flat& a, const Flat& b, int axis) {

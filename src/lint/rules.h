@@ -12,6 +12,7 @@ enum class Rule : uint8_t {
     not_honoured,
     input,
     unused,
+    no_effect,
     albedo_above_one,
     out_of_range,
     ior_one,
@@ -34,12 +35,13 @@ enum class Rule : uint8_t {
     camera_in_wall,
     empty_view,
 };
-inline constexpr size_t kRuleCount = 24;
+inline constexpr size_t kRuleCount = 25;
 
 inline constexpr std::array<LintRule, kRuleCount> kRules{{
     {"not-honoured", Severity::warning, "the file asks for what the picture shows differently or not at all"},
     {"input", Severity::warning, "the reader has ignored, replaced or corrected something in a file"},
     {"unused", Severity::note, "nothing uses an element of the scene"},
+    {"no-effect", Severity::note, "an option of a material changes nothing"},
     {"albedo-above-one", Severity::warning, "a surface reflects and transmits more than it receives"},
     {"out-of-range", Severity::warning, "texels of numbers that must be between 0 and 1 are not, and are clamped"},
     {"ior-one", Severity::warning, "glass with an index of refraction of 1 cannot be seen"},

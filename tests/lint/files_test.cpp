@@ -56,6 +56,95 @@ TEST_F(LintFiles, OurOwnFormat) {
                "a.json:14:14 (/lights/1): warning light-in-wall"}));
 }
 
+/// A scene of one ball with this material.
+std::string ball_of(const std::string& material) {
+    return R"({"version": 1, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
+"textures": {"grain": {"type": "checkerboard"}},
+"materials": {"m": {)" +
+           material + R"(}},
+"objects": [{"type": "sphere", "material": "m"}, {"type": "disk", "center": [3, 0, 0], "material": {"type": "diffuse", "reflectance": "grain"}}],
+"lights": [{"type": "environment", "radiance": 1}]})";
+}
+
+TEST_F(LintFiles, OptionsWithoutEffect) {
+    const std::string pbr = R"("type": "open_pbr", )", solid = pbr + R"("transmission_weight": 1, )";
+    /// Of its findings the first is at this key.
+    const auto expect = [&](const std::string& material, const std::string& key) {
+        const size_t column = std::string(R"("materials": {"m": {)").size() + material.find('"' + key + '"') + 1;
+        const Lines out = lines("m.json", ball_of(material));
+        ASSERT_FALSE(out.empty()) << material;
+        EXPECT_EQ(out[0], "m.json:3:" + std::to_string(column) + " (/materials/m/" + key + "): note no-effect");
+    };
+    for (const char* option : {R"("transmission_depth": 0.5)",
+                               R"("transmission_dispersion_scale": 1)",
+                               R"("transmission_color": [1, 0.5, 1])",
+                               R"("subsurface_color": 0.5)",
+                               R"("subsurface_scatter_anisotropy": 0.5)",
+                               R"("fuzz_color": 0.5)",
+                               R"("fuzz_roughness": 0.1)",
+                               R"("coat_color": [1, 0, 0])",
+                               R"("coat_roughness": 0.1)",
+                               R"("coat_roughness_anisotropy": 0.1)",
+                               R"("coat_ior": 1.5)",
+                               R"("thin_film_thickness": 0.2)",
+                               R"("thin_film_ior": 1.5)",
+                               R"("emission_color": 0.5)",
+                               R"("geometry_tangent_rotation": 20)",
+                               R"("geometry_tangent": "grain")",
+                               R"("coat_color": "grain")",
+                               R"("geometry_coat_normal": "grain")",
+                               R"("transmission_dispersion_abbe_number": 30)",
+                               R"("priority": 0)"}) {
+        const std::string text(option);
+        expect(pbr + text, text.substr(1, text.find('"', 1) - 1));
+    }
+    // Without a depth, and without what turns.
+    expect(solid + R"("transmission_scatter": 0.5)", "transmission_scatter");
+    expect(solid + R"("transmission_scatter": 0.5, "transmission_depth": 0)", "transmission_scatter");
+    expect(solid + R"("transmission_depth": 1, "transmission_scatter_anisotropy": 0.5)",
+           "transmission_scatter_anisotropy");
+    expect(pbr + R"("transmission_weight": 0, "transmission_depth": 1)", "transmission_depth");
+    // Metals, and what nothing is seen through.
+    expect(pbr + R"("base_metalness": 1, "transmission_weight": 0.5)", "transmission_weight");
+    expect(pbr + R"("base_metalness": 1, "subsurface_weight": 0.5)", "subsurface_weight");
+    expect(pbr + R"("priority": 1, "transmission_weight": 0)", "priority");
+    expect(R"("type": "glass", "interior": {"absorption": 1, "anisotropy": 0.5})", "interior");
+    // One finding for what lacks one thing.
+    EXPECT_EQ(lines("m.json", ball_of(pbr + R"("coat_roughness": 0.1, "coat_color": 0.5)")).size(), 1u);
+}
+
+TEST_F(LintFiles, OptionsThatMayStandThere) {
+    const std::string pbr = R"("type": "open_pbr", )", solid = pbr + R"("transmission_weight": 1, )";
+    for (
+        const std::string& fine :
+        {pbr + R"("coat_weight": 0, "coat_roughness": 0.1, "coat_color": 0.5)",  // switched off
+         pbr + R"("fuzz_weight": 0, "fuzz_color": 0.5)", pbr + R"("emission_luminance": 0, "emission_color": 0.5)",
+         pbr + R"("transmission_weight": 0, "transmission_color": 0.5)",
+         // What exporters write of layers that are not there.
+         pbr +
+             R"("coat_roughness": 0, "coat_ior": 1.6, "coat_color": [1, 1, 1], "fuzz_roughness": 0.5, "transmission_depth": 0,
+"transmission_scatter": [0, 0, 0], "transmission_scatter_anisotropy": 0, "emission_color": 1, "subsurface_color": 0.8)",
+         pbr + R"("coat_weight": 0.5, "coat_roughness": 0.1, "base_metalness": 0.5)",
+         pbr + R"("specular_roughness_anisotropy": 0.5, "geometry_tangent_rotation": 20)",
+         pbr + R"("transmission_weight": "grain", "transmission_depth": 1)",
+         solid + R"("transmission_depth": 1, "transmission_scatter": 0.5, "transmission_scatter_anisotropy": 0.5)",
+         solid + R"("transmission_dispersion_scale": 1, "transmission_dispersion_abbe_number": 30)",
+         solid + R"("base_metalness": 0.5, "priority": 1)",
+         std::string(R"("type": "glass", "priority": 1, "interior": {"scattering": 1, "anisotropy": 0.5})")})
+        EXPECT_EQ(lines("m.json", ball_of(fine)), Lines{}) << fine;
+}
+
+TEST_F(LintFiles, ManyOptionsWithoutEffectAreCounted) {
+    std::string all;
+    for (int i = 0; i < 3000; ++i)
+        all += (i ? ",\n\"" : "\"") + std::to_string(i) + R"(": {"type": "open_pbr", "coat_roughness": 0.5})";
+    const std::string scene =
+        R"({"version": 1, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]}, "materials": {)" + all +
+        R"(}, "lights": [{"type": "environment", "radiance": 1}]})";
+    const Lines out = lines("many.json", scene, {{"unused"}, 0});
+    EXPECT_EQ(out.size(), 257u);
+}
+
 TEST_F(LintFiles, ElementsWithoutAPlaceOfTheirOwnHaveTheFile) {
     EXPECT_EQ(lines("a.json", R"({"version": 1, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]}})"),
               (Lines{"a.json: warning no-light"}));

@@ -45,6 +45,10 @@ const Case kPlanes[] = {
          t.place(facing({2, 0, 0}, 0.5f, 0.5f), MaterialId{0});
          t.place(facing({2.5f, 0, 0}, 0.5f, 0.25f), MaterialId{0});
      }},
+    {"SmallRectangleOnALargeOne", "overlapping-surfaces",
+     [](LintScene& t) {
+         t.place(facing({2.5f, 0, 0}, 1, 1), MaterialId{0}), t.place(facing({2.6f, 0, 0}, 0.05f, 0.05f), t.grey());
+     }},
     {"TwoCrossedRectangles", "",
      [](LintScene& t) {
          t.place(facing({2, 0, 0}, 0.5f, 0.5f), MaterialId{0});
@@ -100,6 +104,12 @@ const Case kPlanes[] = {
     {"OverlapBehindABall", "",
      [](LintScene& t) {
          t.place(facing({0, 0, -2}, 0.1f, 0.1f), MaterialId{0}), t.place(facing({0.1f, 0, -2}, 0.1f, 0.05f), t.grey());
+     }},
+    {"OverlapSeenPastATriangle", "overlapping-surfaces",
+     [](LintScene& t) {
+         t.place(facing({2, 0, 0}, 0.5f, 0.5f), MaterialId{0}), t.place(facing({2.5f, 0, 0}, 0.5f, 0.25f), t.grey());
+         // Only the other half of its parallelogram would be in the way.
+         t.place(Mesh{{{0.5f, -2, 1}, {2.5f, -2, 1}, {0.5f, 0.5f, 1}}, {}, {}, {0, 1, 2}}, MaterialId{0});
      }},
     {"OverlapSeenByAParallelCamera", "overlapping-surfaces",
      [](LintScene& t) {
@@ -171,6 +181,21 @@ const Case kLights[] = {
          t.place(facing({2.5f, 0, 0}, 1.2f, 1.2f), MaterialId{0});
          t.s.lights.push_back(AreaLight{t.place(triangle(), t.grey(), at(2.5, 0, 0.001))});
      }},
+    {"BentLampInABentCeiling", "",
+     [](LintScene& t) {
+         // What is not flat is not looked at.
+         Mesh m{{{1.7f, 2, -0.5f},
+                 {1.7f, 2, 0.5f},
+                 {2.2f, 2.1f, -0.5f},
+                 {2.2f, 2.1f, 0.5f},
+                 {2.7f, 2, -0.5f},
+                 {2.7f, 2, 0.5f}},
+                {},
+                {},
+                {0, 2, 3, 0, 3, 1, 2, 4, 5, 2, 5, 3}};
+         t.place(m, MaterialId{0}, at(0, -0.001, 0));
+         t.s.lights.push_back(AreaLight{t.place(m, t.grey())});
+     }},
     {"MirroredLampBehindItsWall", "",
      [](LintScene& t) {
          // Mirrored at x the triangle still shines to +z: to the wall's other side.
@@ -218,6 +243,16 @@ const Case kPictures[] = {
     {"FlatNormalMapThatWasSavedAsColours", "normal-map",
      [](LintScene& t) {
          map_normals(t, {188, 188, 255});
+     }},
+    {"NormalsThatAreNormalsDecodedAsWell", "",
+     [](LintScene& t) {
+         map_normals(t, {135, 174, 246, 34, 172, 202, 47, 179, 212, 40, 175, 207});
+     }},
+    {"ATenthOfTheNormalsPointsIn", "",
+     [](LintScene& t) {
+         std::vector<int> texels = normals(plain, 1);
+         for (size_t i = 0; i < 7; ++i) texels[3 * i + 2] = 255 - texels[3 * i + 2];
+         paint(t, texels);
      }},
     {"NormalMapAsColours", "color-space", [](LintScene& t) { paint(t, normals(plain, 1)); }},
     {"NormalMapAsLinearColours", "color-space", [](LintScene& t) { paint(t, normals(plain, 1), ColorSpace::linear); }},

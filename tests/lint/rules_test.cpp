@@ -193,6 +193,10 @@ const Case kMaterialCases[] = {
      [](LintScene& t) {
          wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.image({0.2f, 1.5f}), ColorSpace::linear));
      }},
+    {"RoughnessBelowZero", "out-of-range",
+     [](LintScene& t) {
+         wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.image({-0.2f, 0.5f}), ColorSpace::linear));
+     }},
     {"RoughnessUpToOne", "",
      [](LintScene& t) {
          wear(t, {}), t.s.materials[0] = rough_by(t.texture(t.image({0, 1}), ColorSpace::linear));
@@ -237,6 +241,13 @@ const Case kMaterialCases[] = {
          const MaterialId painted =
              t.material(DiffuseMaterial{add<TextureId>(t.s.textures, Texture(VertexColorTexture{})), true});
          t.place(cube(0.1f), painted, at(2, 0, 0));
+     }},
+    {"AlphasWithoutColours", "",
+     [](LintScene& t) {
+         Mesh m = cube(0.1f);
+         m.alphas.assign(m.positions.size(), 0.5f);
+         t.place(m, t.material(DiffuseMaterial{add<TextureId>(t.s.textures, Texture(VertexColorTexture{})), true}),
+                 at(2, 0, 0));
      }},
 };
 
@@ -666,7 +677,8 @@ TEST(OpenGlass, SaysWhatBelongsTogether) {
 }
 
 TEST(RuleTable, EachRuleHasAScene) {
-    std::set<std::string_view> tried{"not-honoured", "input", "", "overlapping-surfaces", "duplicate-triangles"},
+    std::set<std::string_view> tried{"not-honoured",       "input", "no-effect", "", "overlapping-surfaces",
+                                     "duplicate-triangles"},
         known{""};
     for (const Case& c : kMaterialCases) tried.insert(c.rule);
     for (const Case& c : kMeshCases) tried.insert(c.rule);

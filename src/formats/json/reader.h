@@ -102,6 +102,7 @@ public:
     const Source& source() const noexcept { return *source_; }
     Value value() const noexcept { return value_; }
     size_t offset() const noexcept { return value_.offset(); }
+    const std::string& what() const noexcept { return what_; }
     const ObjectSpec& spec() const noexcept { return *spec_; }
 
     std::optional<Value> find(std::string_view key);

@@ -48,6 +48,10 @@ private:
                           TextureUse use = TextureUse::reflection);
     OpenPbrMaterial read_open_pbr(ObjectReader& material);
     void read_open_pbr_interior(ObjectReader& material, OpenPbrMaterial& m);
+    // native_no_effect.cpp
+    void note_no_effect(ObjectReader& material, std::string_view key, const std::string& why);
+    void find_no_effect(ObjectReader& material, const OpenPbrMaterial& m);
+    void find_no_effect(ObjectReader& material, const GlassMaterial& m);
     DiffuseTransmissionMaterial read_diffuse_transmission(ObjectReader& material);
     /// "normal_map" or "bump_map"; `material` is filled in later.
     std::optional<Relief> read_relief(ObjectReader& material);

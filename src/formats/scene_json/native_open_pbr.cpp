@@ -81,6 +81,7 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     m.geometry_thin_walled = material.boolean_or("geometry_thin_walled", m.geometry_thin_walled);
     read_open_pbr_interior(material, m);
     m.priority = read_priority(material);
+    find_no_effect(material, m);
     return m;
 }
 

@@ -177,6 +177,7 @@ GlassMaterial NativeLoader::read_glass(ObjectReader& material) {
     out.abbe = read_abbe(material);
     out.interior = read_interior(material);
     out.priority = read_priority(material);
+    find_no_effect(material, out);
     return out;
 }
 
