@@ -188,6 +188,14 @@ struct ColorInput {
     std::optional<TextureId> texture = std::nullopt;
 };
 
+/// A length by a texture: from `minimum` where its first channel is 0 to `maximum` where it is 1 (either may be the
+/// larger). Without one it is `maximum`.
+struct FilmThickness {
+    float maximum = 0.5f;
+    std::optional<TextureId> texture = std::nullopt;
+    float minimum = 0;
+};
+
 /// Normals in tangent space: with (r, g, b) of the texture, 2 r - 1 is along u, 2 g - 1 along -v (up in the image, as
 /// in glTF) and 2 b - 1 along the surface's own normal. Need not be unit length. Where a mesh has tangents, they stand
 /// for u and -v.
@@ -246,10 +254,10 @@ struct OpenPbrMaterial {
     float coat_darkening = 1;
     /// Turns the normal of the coat, which has that of the surface otherwise: a Relief turns all other layers.
     std::optional<NormalMap> geometry_coat_normal = std::nullopt;
-    float thin_film_weight = 0;
-    float thin_film_thickness = 0.5f;  ///< micrometres, 0 … 10
-    float thin_film_ior = 1.4f;        ///< 1 … 3
-    float emission_luminance = 0;      ///< W/(m² sr), as nits are taken for, in [0, 1e9]
+    FloatInput thin_film_weight{0};
+    FilmThickness thin_film_thickness{};  ///< micrometres, 0 … 10
+    float thin_film_ior = 1.4f;           ///< 1 … 3
+    float emission_luminance = 0;         ///< W/(m² sr), as nits are taken for, in [0, 1e9]
     ColorInput emission_color{};
     FloatInput geometry_opacity{1};
     float geometry_opacity_cutoff = 0;  ///< above 0: an opacity below it counts as 0, any other as 1

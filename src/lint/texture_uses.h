@@ -46,6 +46,7 @@ void each_texture(const Material& material, const Visit& visit) {
         number(m->subsurface_weight, "subsurface_weight"), color(m->subsurface_color, "subsurface_color");
         number(m->fuzz_weight, "fuzz_weight"), color(m->fuzz_color, "fuzz_color");
         number(m->fuzz_roughness, "fuzz_roughness"), number(m->coat_roughness, "coat_roughness");
+        number(m->thin_film_weight, "thin_film_weight"), number(m->thin_film_thickness, "thin_film_thickness");
         number(m->specular_roughness_anisotropy, "specular_roughness_anisotropy");
         if (m->geometry_tangent.texture) visit(*m->geometry_tangent.texture, Role::direction, "geometry_tangent");
         if (m->geometry_coat_normal) visit(m->geometry_coat_normal->texture, Role::normal, "geometry_coat_normal");

@@ -108,6 +108,7 @@ private:
     void put(const DiffuseTransmissionMaterial& m) { put(m.reflectance, m.transmittance); }
     void put(const FloatInput& i) { put(i.value, i.texture); }
     void put(const ColorInput& i) { put(i.value, i.texture); }
+    void put(const FilmThickness& t) { put(t.maximum, t.texture, t.minimum); }
     void put(const NormalMap& m) { put(m.texture, m.strength, m.flip_y); }
     void put(const OpenPbrMaterial& m) {
         put(m.base_weight, m.base_color, m.base_metalness, m.base_diffuse_roughness);

@@ -161,7 +161,8 @@ private:
     void check(const OpenPbrMaterial& m) const {
         const char* weights = "weights must be between 0 and 1";
         unit(m.base_weight, weights);
-        for (const FloatInput* w : {&m.base_metalness, &m.transmission_weight, &m.subsurface_weight, &m.fuzz_weight})
+        for (const FloatInput* w :
+             {&m.base_metalness, &m.transmission_weight, &m.subsurface_weight, &m.fuzz_weight, &m.thin_film_weight})
             unit(*w, weights);
         unit(m.coat_weight, weights);
         unit(m.coat_darkening, "coat_darkening must be between 0 and 1");
@@ -187,9 +188,9 @@ private:
                 "subsurface_scatter_anisotropy must be between -1 and 1");
         unit(m.transmission_dispersion_scale, "transmission_dispersion_scale must be between 0 and 1");
         require(m.transmission_dispersion_abbe_number >= 1, "transmission_dispersion_abbe_number must be at least 1");
-        unit(m.thin_film_weight, weights);
-        require(m.thin_film_thickness >= 0 && m.thin_film_thickness <= 10,
-                "thin_film_thickness must be between 0 and 10 micrometres");
+        for (const float thickness : {m.thin_film_thickness.minimum, m.thin_film_thickness.maximum})
+            require(thickness >= 0 && thickness <= 10, "thin_film_thickness must be between 0 and 10 micrometres");
+        if (m.thin_film_thickness.texture) refers(*m.thin_film_thickness.texture, s_.textures, "texture");
         require(m.thin_film_ior >= 1 && m.thin_film_ior <= 3, "thin_film_ior must be between 1 and 3");
         require(m.emission_luminance >= 0 && m.emission_luminance <= 1e9f,
                 "emission_luminance must be between 0 and 1e9");

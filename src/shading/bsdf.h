@@ -11,13 +11,18 @@
 #include "shading/fresnel.h"
 #include "shading/microfacet_energy.h"
 #include "shading/surface.h"
+#include "shading/thin_film.h"
 #include "steradian/scene.h"
 
 namespace steradian {
 
-struct OpenPbrTables;    // what its layers reflect, see open_pbr_tables.h
-class FilmOnDielectric;  // what thin films reflect, see thin_film.h
-class FilmOnMetal;
+struct OpenPbrTables;  // what its layers reflect, see open_pbr_tables.h
+
+/// On so much of a surface as `weight` says.
+struct PointFilm {
+    float weight = 0;
+    FilmPlace thickness{};  ///< in the tables
+};
 
 struct DiffuseBsdf {
     Rgb reflectance;
@@ -40,8 +45,8 @@ struct ConductorBsdf {
         Rgb dip{};  ///< times μ (1 - μ)⁶: by how much it is darker, most at 82 degrees
     };
     std::variant<ComplexIndex, Schlick> fresnel;
-    const FilmOnMetal* film = nullptr;  ///< of a Schlick metal, on so much of the surface as film_weight says
-    float film_weight = 0;
+    const FilmOnMetal* films = nullptr;  ///< of a Schlick metal; null where there is no film
+    PointFilm film;
     Rgb mean_fresnel;
     Rgb tint{1, 1, 1};
     Microfacets facets;
@@ -52,8 +57,9 @@ struct RoughGlassBsdf {
     Rgb reflectance, transmittance;
     Microfacets facets{0.1f, 0.1f};            ///< not smooth
     const MicrofacetEnergy* energy = nullptr;  ///< null: what bounces between facets is lost
-    const FilmOnDielectric* film = nullptr;    ///< if not null, says what is reflected
     float index_place = 0;                     ///< where eta lies in the range of `energy`
+    const FilmOnDielectric* films = nullptr;   ///< null where there is no film
+    PointFilm film{};
 };
 struct ThinGlassBsdf {
     float eta = 1.5f;
@@ -73,6 +79,7 @@ struct OpenPbrBsdf {
     Rgb fuzz_color;
     float metalness = 0, transmission = 0, subsurface = 0, diffuse_roughness = 0;
     float coat_weight = 0, fuzz_weight = 0, fuzz_roughness = 0.5f;
+    PointFilm film;
     float passed_share = 0;  ///< of what the subsurface of a thin wall scatters
     bool thin_walled = false;
     Microfacets coat;

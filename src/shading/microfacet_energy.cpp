@@ -69,17 +69,17 @@ Vec3d unstretched(Vec2 stretch, double c, double q) {
     return normalize(Vec3d{s * std::sqrt(1 - q) / stretch.x, s * std::sqrt(q) / stretch.y, c});
 }
 
-/// ∫ G2 (o · h) D / o.z over microfacet normals h, times the part `bounce(h, o · h)` that leaves. With slopes m (αx cos
-/// ψ, αy sin ψ), m = tan β, the density of normals is 2 sin β cos β dβ dψ / 2π. For each ψ those that reflect upwards
-/// are an interval that begins at 0, those that are seen from o a longer one; the integral is divided there, and in
-/// azimuth where o · h changes its behaviour.
-template <class Bounce>
-double integrate_facets(const Ggx& ggx, Vec3d o, bool beyond_reflection, const Bounce& bounce) {
+/// The nodes of ∫ (o · h) D / o.z over microfacet normals h: `visit(weight, h, o · h)`, where the weight lacks (o · h)
+/// / h.z, and after some of them `close(factor)`, by which theirs are to be multiplied. With slopes m (αx cos ψ, αy sin
+/// ψ), m = tan β, the density of normals is 2 sin β cos β dβ dψ / 2π. For each ψ those that reflect upwards are an
+/// interval that begins at 0, those that are seen from o a longer one; the integral is divided there, and in azimuth
+/// where o · h changes its behaviour.
+template <class Visit, class Close>
+void for_each_facet(const Ggx& ggx, Vec3d o, bool beyond_reflection, const Visit& visit, const Close& close) {
     static const GaussLegendre<kPsiNodes> psi_rule;
     static const GaussLegendre<kSlopeNodes> slope_rule;
     const double psi_o = math::atan2(ggx.ay * o.y, ggx.ax * o.x), quarter = std::numbers::pi / 2;
     const bool symmetric = ggx.ax == ggx.ay;  // on both sides of o
-    double sum = 0;
     for (int q = 0; q < (symmetric ? 2 : 4); ++q)
         for (size_t i = 0; i < psi_rule.x.size(); ++i) {
             const double psi = psi_o + quarter * (q + psi_rule.x[i]);
@@ -91,18 +91,30 @@ double integrate_facets(const Ggx& ggx, Vec3d o, bool beyond_reflection, const B
             const double ends[] = {0, math::atan2(math::sin(steepest), a * math::cos(steepest)),
                                    math::atan2(math::sin(last), a * math::cos(last))};
             for (size_t part = 0; part < (beyond_reflection ? 2u : 1u); ++part) {
-                double inner = 0;
                 for (size_t j = 0; j < slope_rule.x.size(); ++j) {
                     const double beta = ends[part] + (ends[part + 1] - ends[part]) * slope_rule.x[j];
                     const double sb = math::sin(beta), cb = math::cos(beta);
                     const double m = sb / cb, hz = 1 / std::sqrt(1 + m * m * a * a);
                     const Vec3d h{m * sx * hz, m * sy * hz, hz};
                     const double oh = dot(o, h);
-                    if (oh > 0) inner += slope_rule.w[j] * 2 * sb * cb * bounce(h, oh) * oh / hz;
+                    if (oh > 0) visit(slope_rule.w[j] * 2 * sb * cb, h, oh);
                 }
-                sum += psi_rule.w[i] / (symmetric ? 2 : 4) * (ends[part + 1] - ends[part]) * inner;
+                close(psi_rule.w[i] / (symmetric ? 2 : 4) * (ends[part + 1] - ends[part]));
             }
         }
+}
+
+/// The integral of the part `bounce(h, o · h)` that leaves.
+template <class Bounce>
+double integrate_facets(const Ggx& ggx, Vec3d o, bool beyond_reflection, const Bounce& bounce) {
+    double sum = 0, inner = 0;
+    for_each_facet(
+        ggx, o, beyond_reflection,
+        [&](double weight, Vec3d h, double oh) { inner += weight * bounce(h, oh) * oh / h.z; },
+        [&](double factor) {
+            sum += factor * inner;
+            inner = 0;
+        });
     return sum;
 }
 
@@ -113,12 +125,32 @@ double reflecting_albedo(const Ggx& ggx, Vec3d o) {
     });
 }
 
-template <class Reflectance>
-double coating_albedo(const Ggx& ggx, Vec3d o, const Reflectance& reflectance) {
+double coating_albedo(const Ggx& ggx, Vec3d o, double eta) {
     return integrate_facets(ggx, o, false, [&](Vec3d h, double oh) {
         const Vec3d wi = reflect(o, h);
-        return wi.z > 0 ? reflectance(oh) * ggx.masking_over_cosine(o, wi) : 0;
+        return wi.z > 0 ? fresnel_dielectric(oh, eta) * ggx.masking_over_cosine(o, wi) : 0;
     });
+}
+
+/// How much each entry of a table of reflectances has of what leaves towards o: what leaves is linear in them.
+std::vector<double> coating_shares(const Ggx& ggx, Vec3d o, size_t entries) {
+    std::vector<double> sum(entries), inner(entries);
+    for_each_facet(
+        ggx, o, false,
+        [&](double weight, Vec3d h, double oh) {
+            const Vec3d wi = reflect(o, h);
+            if (!(wi.z > 0)) return;
+            const double leaves = weight * ggx.masking_over_cosine(o, wi) * oh / h.z;
+            const double t = std::sqrt(min_of(oh, 1.0)) * double(entries - 1);
+            const size_t first = min_of(static_cast<size_t>(t), entries - 2);
+            inner[first] += leaves * (double(first + 1) - t);
+            inner[first + 1] += leaves * (t - double(first));
+        },
+        [&](double factor) {
+            for (size_t i = 0; i < entries; ++i) sum[i] += factor * inner[i];
+            std::fill(inner.begin(), inner.end(), 0.0);
+        });
+    return sum;
 }
 
 /// eta: the far side's index over that of the side of o.
@@ -197,18 +229,41 @@ void MicrofacetEnergy::fill(const TabulatedRoughness& roughness, Side side, cons
 
 template <class Albedo>
 void MicrofacetEnergy::fill_losses(const TabulatedRoughness& roughness, Side side, const Albedo& albedo) {
-    const size_t row_size = size_t(azimuths_) * size_t(polar_), before = loss_.size();
-    loss_.resize(before + size_t(rows()) * row_size);
-    parallel_for(loss_.size() - before, size_t(polar_), [&](size_t begin, size_t end) {
+    const size_t before = loss_.size();
+    loss_.resize(before + directions());
+    for_each_direction(roughness, side, [&](size_t i, const Microfacets& m, Vec3d o) {
+        const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), o);
+        loss_[before + i] = static_cast<float>(max_of(lost, 0.0));
+    });
+}
+
+template <class Visit>
+void MicrofacetEnergy::for_each_direction(const TabulatedRoughness& roughness, Side side, const Visit& visit) const {
+    const size_t row_size = size_t(azimuths_) * size_t(polar_);
+    parallel_for(directions(), size_t(polar_), [&](size_t begin, size_t end) {
         for (size_t entry = begin; entry < end; ++entry) {
             const Microfacets m = at_row(roughness, static_cast<int>(entry / row_size));
             const size_t azimuth = entry % row_size / size_t(polar_), polar = entry % size_t(polar_);
             const double c = cosine_from_polar(static_cast<double>(polar) / (polar_ - 1));
             const double a = azimuths_ == 1 ? 0 : static_cast<double>(azimuth) / (azimuths_ - 1);
-            const double q = cosine_from_polar(a);
-            const Vec3d o = unstretched(stretch(m, side), max_of(c, 1e-6), q);
-            const double lost = m.smooth() ? 0 : 1 - albedo(m.ggx(), o);
-            loss_[before + entry] = static_cast<float>(max_of(lost, 0.0));
+            visit(entry, m, unstretched(stretch(m, side), max_of(c, 1e-6), cosine_from_polar(a)));
+        }
+    });
+}
+
+void MicrofacetEnergy::fill_losses(const TabulatedRoughness& roughness, std::span<const Rgb> tables, size_t entries) {
+    loss_.resize(directions() * size_t(indices_));
+    for_each_direction(roughness, Side::outside, [&](size_t direction, const Microfacets& m, Vec3d o) {
+        const std::vector<double> share = coating_shares(m.ggx(), o, entries);
+        for (size_t table = 0; table * entries < tables.size(); ++table) {
+            Vec3d leaves;
+            for (size_t i = 0; i < entries; ++i) {
+                const Rgb r = tables[table * entries + i];
+                leaves = leaves + Vec3d{r.r, r.g, r.b} * share[i];
+            }
+            const double channels[] = {leaves.x, leaves.y, leaves.z};
+            for (size_t c = 0; c < 3; ++c)
+                loss_[(table * 3 + c) * directions() + direction] = static_cast<float>(max_of(1 - channels[c], 0.0));
         }
     });
 }
@@ -237,19 +292,28 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::reflecting(const Tabul
     return out;
 }
 
+/// What refracts is most of the loss and depends on the direction itself. Almost all directions are at one place of a
+/// space that is stretched for a polished surface, and different ones where the roughness varies.
+static std::optional<Side> coating_as_it_is(const TabulatedRoughness& roughness) {
+    constexpr float kPolished = 0.05f;
+    const Microfacets m = microfacets(roughness, 1);
+    const bool as_it_is = roughness.texture || max_of(m.alpha_x, m.alpha_y) < kPolished;
+    return as_it_is ? std::optional(Side::outside) : std::nullopt;
+}
+
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const TabulatedRoughness& roughness, double eta) {
-    return coating(roughness, [&](double cosine) { return fresnel_dielectric(cosine, eta); });
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
+    out->as_they_are_ = coating_as_it_is(roughness);
+    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, eta); });
+    return out;
 }
 
 std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::coating(const TabulatedRoughness& roughness,
-                                                                  const std::function<double(double)>& reflectance) {
-    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1));
-    // What refracts is most of the loss and depends on the direction itself. Almost all directions are at one place of
-    // a space that is stretched for a polished surface, and different ones where the roughness varies.
-    constexpr float kPolished = 0.05f;
-    const Microfacets m = microfacets(roughness, 1);
-    if (roughness.texture || max_of(m.alpha_x, m.alpha_y) < kPolished) out->as_they_are_ = Side::outside;
-    out->fill(roughness, Side::outside, [&](const Ggx& ggx, Vec3d o) { return coating_albedo(ggx, o, reflectance); });
+                                                                  std::span<const Rgb> tables, size_t entries) {
+    const int channels = static_cast<int>(tables.size() / entries) * 3;
+    const std::shared_ptr<MicrofacetEnergy> out(new MicrofacetEnergy(roughness, 1, channels));
+    out->as_they_are_ = coating_as_it_is(roughness);
+    out->fill_losses(roughness, tables, entries);
     return out;
 }
 
@@ -272,27 +336,50 @@ std::shared_ptr<const MicrofacetEnergy> MicrofacetEnergy::transmitting(const Tab
     return out;
 }
 
-double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side, float index) const noexcept {
-    if (m.smooth()) return 0;
+/// The neighbours of a direction and a roughness.
+struct MicrofacetEnergy::Stencil {
+    Cubic level, grain, azimuth, polar;
+};
+
+MicrofacetEnergy::Stencil MicrofacetEnergy::stencil(const Microfacets& m, Vec3d w, Side side) const {
     const Vec2 scale = stretch(m, side);
     const double x = scale.x * w.x, y = scale.y * w.y, z = w.z;
     const double across = x * x + y * y;
     const double q = across > 0 ? y * y / across : 0;
-    const Cubic e(static_cast<double>(index), indices_), l(m.level, levels_), g(m.across, grains_),
-        a(polar_from_cosine(q), azimuths_), p(polar_from_cosine(z / std::sqrt(across + z * z)), polar_);
+    return {Cubic(m.level, levels_), Cubic(m.across, grains_), Cubic(polar_from_cosine(q), azimuths_),
+            Cubic(polar_from_cosine(z / std::sqrt(across + z * z)), polar_)};
+}
+
+void MicrofacetEnergy::add_loss(double& sum, double weight, size_t index, Side side, const Stencil& s) const {
+    const auto& [l, g, a, p] = s;
+    const float* table = loss_.data() + (index * size_t(sides_) + size_t(side)) * directions();
+    for (int i = 0; i < l.count; ++i)
+        for (int h = 0; h < g.count; ++h)
+            for (int j = 0; j < a.count; ++j) {
+                const int at = (l.first + i) * grains_ + g.first + h;
+                const float* row = table + (at * azimuths_ + a.first + j) * polar_ + p.first;
+                double inner = 0;
+                for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
+                sum += weight * l.w[size_t(i)] * g.w[size_t(h)] * a.w[size_t(j)] * inner;
+            }
+}
+
+double MicrofacetEnergy::loss(const Microfacets& m, Vec3d w, Side side, float index) const noexcept {
+    if (m.smooth()) return 0;
+    const Stencil s = stencil(m, w, side);
+    const Cubic e(static_cast<double>(index), indices_);
     double sum = 0;
-    for (int n = 0; n < e.count; ++n)
-        for (int i = 0; i < l.count; ++i)
-            for (int h = 0; h < g.count; ++h)
-                for (int j = 0; j < a.count; ++j) {
-                    const int level = ((e.first + n) * sides_ + int(side)) * levels_ + l.first + i;
-                    const int at = level * grains_ + g.first + h;
-                    const float* row = loss_.data() + (at * azimuths_ + a.first + j) * polar_ + p.first;
-                    double inner = 0;
-                    for (int k = 0; k < p.count; ++k) inner += p.w[size_t(k)] * row[k];
-                    sum += e.w[size_t(n)] * l.w[size_t(i)] * g.w[size_t(h)] * a.w[size_t(j)] * inner;
-                }
+    for (int n = 0; n < e.count; ++n) add_loss(sum, e.w[size_t(n)], size_t(e.first + n), side, s);
     return clamp_to(sum, 0.0, 1.0);
+}
+
+void MicrofacetEnergy::losses(const Microfacets& m, Vec3d w, size_t first, std::span<Vec3d> out) const noexcept {
+    const Stencil s = stencil(m, w, Side::outside);
+    for (size_t i = 0; i < out.size(); ++i) {
+        double sum[3] = {};
+        for (size_t c = 0; c < 3; ++c) add_loss(sum[c], 1, (first + i) * 3 + c, Side::outside, s);
+        out[i] = {clamp_to(sum[0], 0.0, 1.0), clamp_to(sum[1], 0.0, 1.0), clamp_to(sum[2], 0.0, 1.0)};
+    }
 }
 
 double MicrofacetEnergy::mean_loss(const Microfacets& m, Side side, float index) const noexcept {

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "shading/ggx.h"
@@ -65,9 +65,10 @@ public:
     static std::shared_ptr<const MicrofacetEnergy> reflecting(const TabulatedRoughness& roughness);
     /// Facets of a dielectric that reflect; what refracts is lost. eta: far over near side, > 1.
     static std::shared_ptr<const MicrofacetEnergy> coating(const TabulatedRoughness& roughness, double eta);
-    /// The same by any reflectance, of the cosine to the facet.
+    /// The same by each channel of several tables of reflectances, one after the other: at the cosines (i / (entries -
+    /// 1))² to the facet, linear in their roots between them. Has losses() only.
     static std::shared_ptr<const MicrofacetEnergy> coating(const TabulatedRoughness& roughness,
-                                                           const std::function<double(double)>& reflectance);
+                                                           std::span<const Rgb> tables, size_t entries);
     /// Facets of a dielectric that reflect and refract.
     static std::shared_ptr<const MicrofacetEnergy> transmitting(const TabulatedRoughness& roughness, IndexRange eta);
 
@@ -75,7 +76,9 @@ public:
     /// dielectrics from the dense side 4e-3; with a grain of 1 to 16 within 1e-2, and 3e-2 less than 3 degrees above
     /// the surface. `index`: where the index lies in its range, IndexRange::place.
     double loss(const Microfacets& m, Vec3d w, Side side = Side::outside, float index = 0) const noexcept;
-    /// Its mean over the hemisphere, weighted by the cosine.
+    /// Of tables of reflectances from number `first` on, as many as there is room for in `out`.
+    void losses(const Microfacets& m, Vec3d w, size_t first, std::span<Vec3d> out) const noexcept;
+    /// The mean of loss() over the hemisphere, weighted by the cosine.
     double mean_loss(const Microfacets& m, Side side = Side::outside, float index = 0) const noexcept;
 
 private:
@@ -84,14 +87,22 @@ private:
     void fill(const TabulatedRoughness& roughness, Side side, const Albedo& albedo);
     template <class Albedo>
     void fill_losses(const TabulatedRoughness& roughness, Side side, const Albedo& albedo);
+    void fill_losses(const TabulatedRoughness& roughness, std::span<const Rgb> tables, size_t entries);
+    template <class Visit>
+    void for_each_direction(const TabulatedRoughness& roughness, Side side, const Visit& visit) const;
     void fill_means(const TabulatedRoughness& roughness, Side side, float index);
     /// Of the space that the table of a side is over: along x and y.
     Vec2 stretch(const Microfacets& m, Side side) const;
+    struct Stencil;
+    Stencil stencil(const Microfacets& m, Vec3d w, Side side) const;
+    void add_loss(double& sum, double weight, size_t index, Side side, const Stencil& s) const;
     /// Row of the axes level and grain together.
     Microfacets at_row(const TabulatedRoughness& roughness, int row) const;
     int rows() const { return levels_ * grains_; }
+    size_t directions() const { return size_t(rows()) * size_t(azimuths_) * size_t(polar_); }  ///< of a table
 
-    // Axes: index, side, level, grain, azimuth, polar angle. An axis with a single entry is constant.
+    // Axes: index (or channel of a table of reflectances), side, level, grain, azimuth, polar angle. An axis with a
+    // single entry is constant.
     int indices_ = 1, sides_ = 1, levels_ = 1, grains_ = 1, azimuths_ = 1, polar_ = 32;
     /// The side that is tabulated over directions as they are: of a dielectric where total reflection begins at one
     /// angle, whatever the roughness. Other sides are in the space in which the roughness is 1 (ggx.h), where the loss

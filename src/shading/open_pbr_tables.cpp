@@ -154,7 +154,7 @@ std::shared_ptr<const FuzzTable> SharedTables::fuzz(const FloatInput& roughness)
 }
 
 FilmTables SharedTables::film(const Film& of) {
-    const FilmKey key{{of.above, of.film, of.thickness, of.weight, of.below, of.eta, of.eta_outside},
+    const FilmKey key{{of.above, of.film, of.thinnest, of.thickest, of.below, of.eta},
                       {of.metal, of.glass, of.opaque},
                       {of.tint[0], of.tint[1], of.tint[2]},
                       of.base.value.x,
@@ -165,19 +165,16 @@ FilmTables SharedTables::film(const Film& of) {
     const auto known = films_.find(key);
     if (known != films_.end()) return known->second;
     FilmTables out;
+    out.thicknesses = FilmThicknesses(of.film, of.thinnest, of.thickest);
     if (of.metal)
-        out.metal = std::make_shared<const FilmOnMetal>(of.above, of.film, of.thickness,
+        out.metal = std::make_shared<const FilmOnMetal>(of.above, of.film, out.thicknesses,
                                                         Rgb{of.tint[0], of.tint[1], of.tint[2]});
     if (of.glass)
-        out.glass = std::make_shared<const FilmOnDielectric>(FilmIndices{1, of.film, of.eta}, of.thickness, of.weight,
-                                                             of.eta, false);
+        out.glass = std::make_shared<const FilmOnDielectric>(FilmIndices{1, of.film, of.eta}, out.thicknesses, false);
     if (of.opaque) {
         const FilmIndices n{of.above, of.film, of.below * of.above};
-        const auto table = std::make_shared<const FilmOnDielectric>(n, of.thickness, of.weight, of.eta_outside, true);
-        out.dielectric = table;
-        for (int c = 0; c < 3; ++c)
-            out.energy[size_t(c)] = MicrofacetEnergy::coating(
-                of.base, [&](double mu) { return static_cast<double>(table->reflectance(mu)[c]); });
+        out.dielectric = std::make_shared<const FilmOnDielectric>(n, out.thicknesses, true);
+        out.energy = MicrofacetEnergy::coating(of.base, out.dielectric->table(), FilmOnDielectric::kCosines);
     }
     return films_[key] = out;
 }
@@ -188,8 +185,11 @@ SharedTables::Film film_of(const OpenPbrMaterial& m, const TabulatedRoughness& b
                            const OpenPbrTables& tables) {
     SharedTables::Film out;
     out.above = 1 + (static_cast<double>(m.coat_ior) - 1) * m.coat_weight;
-    out.film = m.thin_film_ior, out.thickness = m.thin_film_thickness, out.weight = m.thin_film_weight;
-    out.below = below, out.eta = tables.eta, out.eta_outside = tables.eta_outside;
+    out.film = m.thin_film_ior;
+    const FilmThickness& t = m.thin_film_thickness;
+    out.thinnest = t.texture ? min_of(t.minimum, t.maximum) : t.maximum;
+    out.thickest = t.texture ? max_of(t.minimum, t.maximum) : t.maximum;
+    out.below = below, out.eta = tables.eta;
     out.metal = m.base_metalness.value > 0, out.glass = m.transmission_weight.value > 0;
     out.opaque = m.transmission_weight.value != 1 || m.transmission_weight.texture.has_value();
     if (out.metal)
@@ -236,7 +236,7 @@ OpenPbrTables make_open_pbr_tables(const OpenPbrMaterial& m, SharedTables& share
         out.glass_index = GlassIndex(out.eta, open_pbr_abbe(m));
         out.glass = shared.transmitting(base, out.glass_index.range());
     }
-    if (m.thin_film_weight > 0) out.film = shared.film(film_of(m, base, weighted, out));
+    if (m.thin_film_weight.value > 0) out.film = shared.film(film_of(m, base, weighted, out));
     if (m.coat_weight > 0) {
         const Vec2 alpha = open_pbr_alpha(out.coat_textured ? 1 : m.coat_roughness.value, m.coat_roughness_anisotropy);
         out.coat = shared.coating(table_roughness(alpha, out.coat_textured), out.coat_eta);

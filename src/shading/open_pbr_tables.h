@@ -41,12 +41,13 @@ private:
     std::vector<Level> levels_;  ///< one, or over the roughness
 };
 
-/// Of a base under a thin film.
+/// Of a base that is under a thin film everywhere.
 struct FilmTables {
+    FilmThicknesses thicknesses;
     /// Over the opaque base (below the coat) with what is lost of each channel, over glass, and over metal; null where
     /// the base has no such part.
     std::shared_ptr<const FilmOnDielectric> dielectric, glass;
-    std::array<std::shared_ptr<const MicrofacetEnergy>, 3> energy;
+    std::shared_ptr<const MicrofacetEnergy> energy;
     std::shared_ptr<const FilmOnMetal> metal;
 };
 
@@ -86,10 +87,11 @@ public:
 
     /// What the tables of a film are made of.
     struct Film {
-        double above = 1, film = 1, thickness = 0, weight = 0;  ///< indices; micrometres
-        double below = 1, eta = 1, eta_outside = 1;             ///< the base under the film, and without one
-        bool metal = false, glass = false, opaque = false;      ///< the parts that there are
-        float tint[3] = {};                                     ///< of the metal towards grazing angles
+        double above = 1, film = 1;                         ///< indices
+        double thinnest = 0, thickest = 0;                  ///< micrometres
+        double below = 1, eta = 1;                          ///< the base under a coat, and without one
+        bool metal = false, glass = false, opaque = false;  ///< the parts that there are
+        float tint[3] = {};                                 ///< of the metal towards grazing angles
         TabulatedRoughness base{Roughness{}};
     };
     FilmTables film(const Film& of);
@@ -103,7 +105,7 @@ private:
     std::map<Key, std::shared_ptr<const MicrofacetEnergy>> energy_;
     std::map<std::pair<float, bool>, std::shared_ptr<const FuzzTable>> fuzz_;
     using FilmKey =
-        std::tuple<std::array<double, 7>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool, bool>;
+        std::tuple<std::array<double, 6>, std::array<bool, 3>, std::array<float, 3>, float, float, bool, bool, bool>;
     std::map<FilmKey, FilmTables> films_;
 };
 

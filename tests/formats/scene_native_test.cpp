@@ -264,8 +264,8 @@ TEST(NativeScene, OpenPbr) {
                              m.coat_darkening,
                              m.geometry_opacity.value,
                              m.subsurface_scatter_anisotropy,
-                             m.thin_film_weight,
-                             m.thin_film_thickness,
+                             m.thin_film_weight.value,
+                             m.thin_film_thickness.maximum,
                              m.thin_film_ior - 1,
                              m.emission_luminance,
                              m.emission_color.value.r,
@@ -280,6 +280,31 @@ TEST(NativeScene, OpenPbr) {
     for (const FloatInput& in : {textured.coat_roughness, textured.fuzz_roughness}) EXPECT_EQ(in.texture, TextureId{0});
     EXPECT_EQ(textured.specular_roughness.value, 1);
     EXPECT_EQ(textured.specular_roughness.texture, TextureId{0});
+}
+
+TEST(NativeScene, ThinFilmsWithTextures) {
+    const auto with = [](const std::string& members) {
+        return scene_with(
+            R"("textures": {"t": {"type": "constant", "color": 0.1}, "n": {"type": "constant", "color": 0.5}},
+            "materials": {"m": {"type": "open_pbr", "thin_film_weight": "t", "thin_film_thickness": )" +
+            members + "}}");
+    };
+    const auto film = [&](const std::string& members) {
+        return std::get<OpenPbrMaterial>(load_good(with(members)).scene.materials[0]);
+    };
+    const OpenPbrMaterial all = film(R"({"texture": "n", "minimum": 0.3, "maximum": 0.1})");
+    EXPECT_EQ(all.thin_film_weight.texture, TextureId{0});
+    EXPECT_EQ(all.thin_film_thickness.texture, TextureId{1});
+    EXPECT_EQ(all.thin_film_thickness.minimum, 0.3f);
+    EXPECT_EQ(all.thin_film_thickness.maximum, 0.1f);
+    EXPECT_EQ(film(R"({"texture": "n", "maximum": 10})").thin_film_thickness.minimum, 0);
+    expect_error(with(R"(§{"texture": "n"})"), "'maximum'");
+    expect_error(with(R"(§{"maximum": 1})"), "'texture'");
+    expect_error(with(R"({"texture": "n", "maximum": §10.1})"), "'maximum'");
+    expect_error(with(R"({"texture": "n", "maximum": 1, "minimum": §-1})"), "'minimum'");
+    expect_error(with(R"({"texture": §0.5, "maximum": 1})"), "a texture");
+    expect_error(with(R"({"texture": "n", "maximum": 1, §"scale": 2})"), "scale");
+    expect_error(with(R"(§"n")"), "'thin_film_thickness'");
 }
 
 TEST(NativeScene, FramesOfOpenPbrLayers) {

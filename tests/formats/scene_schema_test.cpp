@@ -32,7 +32,7 @@ Names keys_of(Value object) {
 std::vector<ObjectSpec> all_specs() {
     std::vector<ObjectSpec> all{kSceneSpec,       kRenderSpec,    kFilmSpec,   kFilterSpec,
                                 kObjectLightSpec, kTransformSpec, kRotateSpec, kLookAtSpec,
-                                kNormalMapSpec,   kBumpMapSpec,   kMediumSpec};
+                                kNormalMapSpec,   kBumpMapSpec,   kMediumSpec, kFilmThicknessSpec};
     all.insert(all.end(), std::begin(kCameraSpecs), std::end(kCameraSpecs));
     all.insert(all.end(), std::begin(kTextureSpecs), std::end(kTextureSpecs));
     all.insert(all.end(), std::begin(kMaterialSpecs), std::end(kMaterialSpecs));

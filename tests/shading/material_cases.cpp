@@ -77,6 +77,29 @@ void add_glass(std::vector<MaterialCase>& out) {
     out.push_back({"thin glass green", ThinGlassMaterial{1.5f, {0.5f, 0.9f, 0.6f}}, false});
 }
 
+/// Of a constant thickness, and of one between two that tables are made for.
+template <class AddCase>
+void add_films(const AddCase& add_case, const OpenPbrMaterial& white, TextureId level) {
+    OpenPbrMaterial m = white;
+    m.thin_film_weight.value = 1, m.thin_film_thickness = {0.4f}, m.thin_film_ior = 2;
+    add_case("white under a film", m, true, 0.25f);
+    m.base_metalness.value = 1, m.base_color.value = {0.9f, 0.6f, 0.4f}, m.thin_film_weight.value = 0.7f;
+    add_case("metal under a film", m, false, 0.25f);
+    m.thin_film_thickness = {0.1f, level, 0.8f}, m.thin_film_weight = {1, level};
+    add_case("metal under a textured film", m, false, 0.25f);
+    m = white;
+    m.thin_film_weight.value = 1, m.transmission_weight.value = 1;
+    add_case("glass under a film", m, true, 0.12f);
+    m.thin_film_thickness = {0.9f, level, 0.1f}, m.thin_film_weight = {0.8f, level};
+    add_case("glass under a textured film", m, true, 0.12f);
+    m.transmission_weight.value = 0, m.thin_film_ior = 2;
+    add_case("white under a textured film", m, true, 0.25f);
+    m.specular_roughness = {1, level}, m.coat_weight = 0.5f, m.coat_roughness.value = 0.3f;
+    add_case("white textured under a textured film and a coat", m, true, 0.09f);
+    m.specular_roughness_anisotropy = {0.8f, level}, m.specular_grain_shape = GrainShape::gltf;
+    add_case("white with a textured grain under a textured film", m, true, 0.15f);
+}
+
 void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     const auto add_case = [&](std::string name, const OpenPbrMaterial& m, bool lossless, float peak) {
         const bool transmits = m.transmission_weight.value > 0 && !m.geometry_thin_walled;
@@ -130,17 +153,11 @@ void add_open_pbr(std::vector<MaterialCase>& out, TextureId level) {
     m.coat_roughness = {1, level}, m.coat_weight = 0.6f, m.fuzz_roughness = {1, level}, m.fuzz_weight.value = 0.5f;
     add_case("white under textured layers", m, true, 0.09f);
     m = white;
-    m.thin_film_weight = 1, m.thin_film_thickness = 0.4f, m.thin_film_ior = 2;
-    add_case("white under a film", m, true, 0.25f);
-    m.base_metalness.value = 1, m.base_color.value = {0.9f, 0.6f, 0.4f}, m.thin_film_weight = 0.7f;
-    add_case("metal under a film", m, false, 0.25f);
-    m = white;
-    m.thin_film_weight = 1, m.transmission_weight.value = 1, m.specular_color.value = {1, 1, 1};
-    add_case("glass under a film", m, true, 0.12f);
+    add_films(add_case, white, level);
     m = white;
     m.geometry_thin_walled = true, m.transmission_weight.value = 1;
     add_case("pane", m, true, 0.25f);
-    m.transmission_color.value = {0.5f, 0.9f, 0.8f}, m.thin_film_weight = 1, m.transmission_weight.value = 0.5f;
+    m.transmission_color.value = {0.5f, 0.9f, 0.8f}, m.thin_film_weight.value = 1, m.transmission_weight.value = 0.5f;
     m.subsurface_weight.value = 0.8f, m.subsurface_scatter_anisotropy = 0.4f;
     add_case("petal", m, false, 0.25f);
     m = white;

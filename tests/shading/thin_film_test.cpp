@@ -1,12 +1,16 @@
 // Thin films against sums of partial waves and integrals over the spectrum that are computed another way.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 
 #include "math/warp.h"
 #include "shading/fresnel.h"
+#include "shading/spectrum.h"
 #include "shading/thin_film.h"
+#include "shading/world.h"
+#include "support/support.h"
 
 namespace steradian {
 namespace {
@@ -109,7 +113,7 @@ Rgb by_spectrum(double mu, const FilmIndices& n, double thickness) {
 TEST(ThinFilm, TablesAreTheIntegralOverTheSpectrum) {
     for (const double thickness : {0.08, 0.3, 0.6, 2.0})
         for (const FilmIndices& n : {kStacks[0], kStacks[1], kStacks[2]}) {
-            const FilmOnDielectric table(n, thickness, 1, n.base, false);
+            const FilmOnDielectric table(n, FilmThicknesses(n.film, thickness, thickness), false);
             for (const double mu : {1.0, 0.83, 0.5, 0.21, 0.04})
                 for (int c = 0; c < 3; ++c)
                     EXPECT_NEAR(table.reflectance(mu)[c], by_spectrum(mu, n, thickness)[c], 5e-3)
@@ -119,7 +123,7 @@ TEST(ThinFilm, TablesAreTheIntegralOverTheSpectrum) {
 
 TEST(ThinFilm, OnMetalIsThatOfItsIndex) {
     for (const double thickness : {0.0, 0.2, 0.5}) {
-        const FilmOnMetal table(1, 1.4, thickness, {1, 0.8f, 0.8f});
+        const FilmOnMetal table(1, 1.4, FilmThicknesses(1.4, thickness, thickness), {1, 0.8f, 0.8f});
         for (const float normal : {0.5f, 0.875f})  // entries of the table, so that only the cosine is interpolated
             for (const double mu : {1.0, 0.7, 0.3})
                 for (int c = 0; c < 3; ++c) {
@@ -129,6 +133,114 @@ TEST(ThinFilm, OnMetalIsThatOfItsIndex) {
                     EXPECT_NEAR(table.reflectance(mu, {normal, normal, normal})[c], expected[c], 1e-2);
                 }
     }
+}
+
+/// What is to be interpolated: the integral over the spectrum of Airy's formula, at one angle.
+struct Fringe {
+    Rgb exact;
+    std::array<bool, 3> clamped;
+    double contrast;  ///< between the brightest and the darkest phase
+};
+Fringe fringe_of(double mu, const FilmIndices& n, double thickness) {
+    Fringe out{};
+    Vec3d sum, white;
+    for (double nm = kShortestWavelength * 1000 + 0.25; nm < kLongestWavelength * 1000; nm += 0.5) {
+        const Vec3d w = rgb_response(nm / 1000);
+        sum = sum + w * film_reflectance(mu, n, thickness, nm / 1000), white = white + w;
+    }
+    const double channels[] = {sum.x / white.x, sum.y / white.y, sum.z / white.z};
+    for (size_t c = 0; c < 3; ++c) {
+        out.clamped[c] = channels[c] < 0.01 || channels[c] > 0.99;
+        out.exact[int(c)] = static_cast<float>(std::clamp(channels[c], 0.0, 1.0));
+    }
+    const double sine2 = n.outside * n.outside * (1 - mu * mu) / (n.film * n.film);
+    double least = 1, most = 0;
+    for (int i = 0; i < 64; ++i) {  // once through all phases
+        const double r = film_reflectance(mu, n, i / 64.0 * 0.5 / (2 * n.film * std::sqrt(1 - sine2)), 0.5);
+        least = std::min(least, r), most = std::max(most, r);
+    }
+    out.contrast = most - least;
+    return out;
+}
+
+/// Linear interpolation errs by (2π/24)²/8 = 0.9 % of a wave's amplitude, half of the contrast. Colours beyond the
+/// gamut make it up to 1.4 times as much, and what bounces more than once within the film has shorter fringes: 1.5 % of
+/// the contrast. Where a channel is clamped there is an edge, and the error a quarter of the slope times the distance:
+/// 5 %.
+double tolerance(const Fringe& f, int channel) {
+    return (f.clamped[size_t(channel)] ? 0.05 : 0.015) * f.contrast + 1e-4;
+}
+
+TEST(ThinFilm, ThicknessesAreInterpolated) {
+    test::Random random(71);
+    const int tables = test::by_tier(12, 400);
+    for (int i = 0; i < tables; ++i) {
+        const FilmIndices n{1, random.between(1.1, 2.2), random.between(1, 2.5), 0};
+        const double thick = i % 4 == 0 ? 10 : i % 4 == 1 ? 3 : 0.8, thin = i % 3 == 0 ? 0 : 0.1 * thick;
+        const FilmThicknesses thicknesses(n.film, thick, thin);
+        EXPECT_LE(thicknesses.count(), 321u);
+        const FilmOnDielectric table(n, thicknesses, false);
+        for (int k = 0; k < 40; ++k) {
+            // An entry of the table, so that only the thickness is interpolated.
+            const double t =
+                std::floor(random.between(40, FilmOnDielectric::kCosines)) / (FilmOnDielectric::kCosines - 1);
+            const double thickness = random.between(thin, k % 2 ? thick : std::min(thick, 1.0));
+            const Fringe expected = fringe_of(t * t, n, thickness);
+            const Rgb found = table.reflectance(t * t, thicknesses.place(thickness));
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(found[c], expected.exact[c], tolerance(expected, c))
+                    << "film " << n.film << " on " << n.base << ", " << thickness << " um, cosine " << t * t;
+        }
+    }
+}
+
+TEST(ThinFilm, ThicknessesOnMetalAreInterpolated) {
+    test::Random random(72);
+    const double thin = 0.1, thick = 0.9, film = 1.45;
+    const FilmThicknesses thicknesses(film, thin, thick);
+    const FilmOnMetal table(1, film, thicknesses, {1, 1, 1});
+    for (int i = 0; i < 200; ++i) {
+        const float normal = i % 2 ? 0.5f : 0.875f;  // entries of the table
+        const MetalIndex m = metal_index_of(normal, normal + (1 - normal) * std::pow(6 / 7.0, 5));
+        const double t = std::floor(random.between(20, 96)) / 95, thickness = random.between(thin, thick);
+        const Fringe expected = fringe_of(t * t, {1, film, m.n, m.k}, thickness);
+        const Rgb found = table.reflectance(t * t, {normal, normal, normal}, thicknesses.place(thickness));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(found[c], expected.exact[c], tolerance(expected, c)) << thickness << " " << t * t;
+    }
+}
+
+TEST(ThinFilm, ThicknessesHaveTheirEnds) {
+    for (const auto& [a, b] : {std::pair(0.1, 0.4), {0.4, 0.1}, {0.0, 10.0}, {9.0, 10.0}, {0.0, 1e-6}}) {
+        const FilmThicknesses films(1.3, a, b);
+        ASSERT_GE(films.count(), 2u);
+        EXPECT_EQ(films[0], std::min(a, b));
+        EXPECT_EQ(films[films.count() - 1], std::max(a, b));
+        double before = -1;
+        for (size_t i = 0; i < films.count(); ++i) {
+            EXPECT_GT(films[i], before);
+            before = films[i];
+            const FilmPlace place = films.place(films[i]);
+            EXPECT_NEAR(place.first + double(place.f), double(i), 1e-4);
+            EXPECT_LT(place.first + 1, films.count());
+        }
+        EXPECT_EQ(films.place(std::min(a, b)).f, 0);
+        EXPECT_EQ(films.place(std::max(a, b)).f, 1);
+        EXPECT_EQ(films.place(-1).first + films.place(-1).f, 0);
+        EXPECT_EQ(films.place(99).first + 2, films.count());
+    }
+    EXPECT_EQ(FilmThicknesses(1.3, 0.2, 0.2).count(), 1u);
+}
+
+/// Where fringes of colours have faded the sum is that of intensities.
+TEST(ThinFilm, ThickOnesAreTheMeanOverPhases) {
+    for (const FilmIndices& n : {kStacks[0], kStacks[2]})
+        for (const double thickness : {5.2, 8.0, 10.0}) {
+            const FilmOnDielectric table(n, FilmThicknesses(n.film, thickness, thickness), false);
+            for (const double mu : {1.0, 0.49})
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(table.reflectance(mu)[c], fringe_of(mu, n, thickness).exact[c], 1e-3);
+        }
 }
 
 TEST(ThinFilm, MetalsHaveAnIndex) {

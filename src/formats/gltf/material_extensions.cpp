@@ -138,23 +138,25 @@ void Materials::read_anisotropy(const Object& anisotropy, Reading& r) {
 /// As OpenPBR's thin film, which lies where the extension has it: on the base, below the coat.
 void Materials::read_iridescence(const Object& iridescence, Reading& r) {
     OpenPbrMaterial& s = r.surface;
-    s.thin_film_weight = unit(iridescence, "iridescenceFactor", 0);
-    if (s.thin_film_weight == 0) return;
-    constexpr double kNanometre = 1e-3, kThickest = 10, kLargest = 3;
-    const double thickness = iridescence.number_or("iridescenceThicknessMaximum", 400, kNotNegative) * kNanometre;
+    s.thin_film_weight.value = unit(iridescence, "iridescenceFactor", 0);
+    if (s.thin_film_weight.value == 0) return;
+    s.thin_film_weight.texture = texture(iridescence, "iridescenceTexture", Plane::red, r);
+    const auto thickness = [&](std::string_view key, double fallback) {
+        constexpr double kNanometre = 1e-3, kThickest = 10;
+        const double micrometres = iridescence.number_or(key, fallback, kNotNegative) * kNanometre;
+        if (micrometres > kThickest)
+            context_.not_honoured("a film of more than 10 micrometres is as thick as that", iridescence.offset_of(key));
+        return static_cast<float>(min_of(micrometres, kThickest));
+    };
+    s.thin_film_thickness.maximum = thickness("iridescenceThicknessMaximum", 400);
+    s.thin_film_thickness.texture = texture(iridescence, "iridescenceThicknessTexture", Plane::green, r);
+    if (s.thin_film_thickness.texture) s.thin_film_thickness.minimum = thickness("iridescenceThicknessMinimum", 100);
+    constexpr double kLargest = 3;
     const double ior = iridescence.number_or("iridescenceIor", 1.3, kNotNegative);
-    if (thickness > kThickest)
-        context_.not_honoured("a film of more than 10 micrometres is as thick as that",
-                              iridescence.offset_of("iridescenceThicknessMaximum"));
     if (ior < 1 || ior > kLargest)
         context_.not_honoured("an index of a film beyond 1 to 3 is taken as the nearer one",
                               iridescence.offset_of("iridescenceIor"));
-    s.thin_film_thickness = static_cast<float>(min_of(thickness, kThickest));
     s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, kLargest));
-    read_weight(iridescence, "iridescenceTexture", Plane::red, r,
-                [](OpenPbrMaterial& without) { without.thin_film_weight = 0; });
-    if (const auto value = iridescence.find("iridescenceThicknessTexture"))
-        context_.not_honoured("films are as thick everywhere as 'iridescenceThicknessMaximum' says", value->offset());
 }
 
 /// What the base scatters goes through the sheet instead, to that part: a thin wall whose subsurface scatters forward.

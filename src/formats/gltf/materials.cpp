@@ -126,7 +126,7 @@ std::optional<Material> Materials::make_simple(const Reading& r, const std::stri
         return context_.assets.add_texture(ConstantTexture{s.base_color.value}, name);
     };
     const bool there = s.geometry_opacity.value == 1 && !s.geometry_opacity.texture;
-    const bool layered = s.coat_weight > 0 || s.fuzz_weight.value > 0 || s.thin_film_weight > 0;
+    const bool layered = s.coat_weight > 0 || s.fuzz_weight.value > 0 || s.thin_film_weight.value > 0;
     if (!there || layered || (s.base_color.texture && !is_white(s.base_color.value))) return std::nullopt;
     const bool smooth = s.specular_roughness.value == 0 && s.specular_roughness_anisotropy.value == 0;
     if (s.base_metalness.value == 1 && !s.base_metalness.texture && smooth)

@@ -87,6 +87,7 @@ inline constexpr Key kConductor[] = {"type",      "metal", "n",    "k",         
 
 inline constexpr Key kMix[] = {"type", "materials", "weight"};
 
+inline constexpr Key kFilmThickness[] = {"texture", "minimum", "maximum"};
 inline constexpr Key kNormalMap[] = {"texture", "strength", "flip_y"};
 inline constexpr Key kBumpMap[] = {"texture", "scale"};
 
@@ -147,6 +148,7 @@ inline constexpr ObjectSpec kMaterialSpecs[] = {{"diffuse_material", keys::kDiff
                                                 {"open_pbr_material", keys::kOpenPbr},
                                                 {"mix_material", keys::kMix}};
 inline constexpr ObjectSpec kMediumSpec{"medium", keys::kMedium};
+inline constexpr ObjectSpec kFilmThicknessSpec{"film_thickness", keys::kFilmThickness};
 inline constexpr ObjectSpec kNormalMapSpec{"normal_map", keys::kNormalMap};
 inline constexpr ObjectSpec kBumpMapSpec{"bump_map", keys::kBumpMap};
 inline constexpr ObjectSpec kShapeSpecs[] = {{"mesh_shape", keys::kMeshShape},

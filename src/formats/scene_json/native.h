@@ -47,6 +47,7 @@ private:
     ColorInput read_input(ObjectReader& material, std::string_view key, ColorInput fallback,
                           TextureUse use = TextureUse::reflection);
     OpenPbrMaterial read_open_pbr(ObjectReader& material);
+    FilmThickness read_film_thickness(Value value);
     void read_open_pbr_interior(ObjectReader& material, OpenPbrMaterial& m);
     // native_no_effect.cpp
     void note_no_effect(ObjectReader& material, std::string_view key, const std::string& why);

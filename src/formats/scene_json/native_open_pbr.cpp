@@ -21,6 +21,20 @@ ColorInput NativeLoader::read_input(ObjectReader& material, std::string_view key
     return {json::read_color(source_, *value, quoted(key), kUnit)};
 }
 
+/// A number, or an object with a texture.
+FilmThickness NativeLoader::read_film_thickness(Value value) {
+    static constexpr Range kThickness{0, 10};
+    static constexpr std::string_view kWhat = "'thin_film_thickness'";
+    if (!value.is(Kind::object)) return {json::read_number(source_, value, kWhat, kThickness)};
+    ObjectReader reader(source_, value, kFilmThicknessSpec, kWhat);
+    FilmThickness out;
+    out.texture = read_numbers(reader.require("texture"), "the texture of a thickness");
+    out.minimum = reader.number_or("minimum", 0, kThickness);
+    out.maximum = json::read_number(source_, reader.require("maximum"), "'maximum'", kThickness);
+    reader.finish();
+    return out;
+}
+
 /// Section "Translucent base": with a depth the colour is that of the interior, without one that of the surface.
 void NativeLoader::read_open_pbr_interior(ObjectReader& material, OpenPbrMaterial& m) {
     const float depth = material.number_or("transmission_depth", 0, {0, 1e9});
@@ -72,8 +86,9 @@ OpenPbrMaterial NativeLoader::read_open_pbr(ObjectReader& material) {
     number("coat_darkening", m.coat_darkening);
     if (const auto normals = material.find("geometry_coat_normal"))
         m.geometry_coat_normal = read_normal_map(*normals, "'geometry_coat_normal'");
-    number("thin_film_weight", m.thin_film_weight);
-    number("thin_film_thickness", m.thin_film_thickness, {0, 10});
+    input("thin_film_weight", m.thin_film_weight);
+    if (const auto thickness = material.find("thin_film_thickness"))
+        m.thin_film_thickness = read_film_thickness(*thickness);
     number("thin_film_ior", m.thin_film_ior, {1, 3});
     number("emission_luminance", m.emission_luminance, {0, 1e9});
     m.emission_color = read_input(material, "emission_color", m.emission_color, TextureUse::emission);

@@ -39,8 +39,9 @@ inline Rgb fresnel(const ConductorBsdf& lobe, double cosine) {
     const auto dip = static_cast<float>(mu * m2 * m2 * m2);
     const Rgb bare{max_of(f.r - schlick.dip.r * dip, 0.0f), max_of(f.g - schlick.dip.g * dip, 0.0f),
                    max_of(f.b - schlick.dip.b * dip, 0.0f)};
-    if (!lobe.film) return bare;
-    return bare * (1 - lobe.film_weight) + lobe.film->reflectance(mu, schlick.normal) * lobe.film_weight;
+    if (!lobe.films) return bare;
+    const Rgb under_film = lobe.films->reflectance(mu, schlick.normal, lobe.film.thickness);
+    return bare * (1 - lobe.film.weight) + under_film * lobe.film.weight;
 }
 
 /// What part of the light leaves after more than one bounce when facets reflect all of it: also the probability of

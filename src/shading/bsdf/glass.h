@@ -18,7 +18,6 @@ inline PlainLobe make_lobe(const GlassMaterial& material, const LobeContext& con
                                   material.transmittance,
                                   facets,
                                   energy_of_boundary(context, context.material.energy),
-                                  nullptr,
                                   context.material.glass.range().place(own)};
     }
     return GlassBsdf{eta, material.reflectance, material.transmittance};

@@ -35,7 +35,7 @@ inline Microfacets open_pbr_coat(const OpenPbrMaterial& m, const OpenPbrTables& 
 
 /// The metal: Schlick's approximation with a dip at 82 degrees ("F82-tint").
 inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Rgb specular_color, Microfacets facets,
-                                    const MicrofacetEnergy* energy, const FilmOnMetal* film) {
+                                    const MicrofacetEnergy* energy, const FilmOnMetal* films, PointFilm film) {
     constexpr double kMu = 1.0 / 7, kRest = 6.0 / 7;
     const double schlick = kRest * kRest * kRest * kRest * kRest;
     ConductorBsdf::Schlick f{color, {1, 1, 1}, {}};
@@ -52,12 +52,19 @@ inline ConductorBsdf open_pbr_metal(const OpenPbrMaterial& m, Rgb color, Rgb spe
     out.tint = {w, w, w};
     out.facets = facets;
     out.energy = energy;
-    if (film) {
-        out.film = film;
-        out.film_weight = m.thin_film_weight;
-        out.mean_fresnel = out.mean_fresnel * (1 - out.film_weight) + film->mean(color) * out.film_weight;
+    if (films && film.weight > 0) {
+        out.films = films, out.film = film;
+        out.mean_fresnel = out.mean_fresnel * (1 - film.weight) + films->mean(color, film.thickness) * film.weight;
     }
     return out;
+}
+
+inline PointFilm open_pbr_film(const OpenPbrMaterial& m, const OpenPbrTables& tables, const LobeContext& context) {
+    if (m.thin_film_weight.value == 0) return {};
+    const FilmThickness& in = m.thin_film_thickness;
+    const double t = in.texture ? clamp_to(eval_texture(context.scene, *in.texture, context.point).r, 0.0f, 1.0f) : 1;
+    return {eval_input(context.scene, m.thin_film_weight, context.point),
+            tables.film.thicknesses.place(in.minimum * (1 - t) + in.maximum * t)};
 }
 
 /// By how much the base is darker because the coat sends light back to it (section "Coat darkening"): with K the part
@@ -86,7 +93,9 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
     const Microfacets facets = open_pbr_base(m, tables, roughness, number(m.specular_roughness_anisotropy));
     out.metalness = number(m.base_metalness);
     out.specular_color = color(m.specular_color);
-    out.metal = open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get());
+    out.film = open_pbr_film(m, tables, context);
+    out.metal =
+        open_pbr_metal(m, base, out.specular_color, facets, tables.metal.get(), tables.film.metal.get(), out.film);
     out.transmission = number(m.transmission_weight);
     const float own = tables.glass_index.at(context.wavelength);
     float eta = relative_index(own, context);
@@ -96,8 +105,9 @@ inline OpenPbrBsdf make_lobe(const OpenPbrMaterial& m, const LobeContext& contex
                  color(m.transmission_color),
                  facets,
                  energy_of_boundary(context, tables.glass),
-                 tables.film.glass.get(),
-                 tables.glass_index.range().place(own)};
+                 tables.glass_index.range().place(own),
+                 out.film.weight > 0 ? tables.film.glass.get() : nullptr,
+                 out.film};
     out.diffuse = base;
     out.diffuse_roughness = m.base_diffuse_roughness;
     out.subsurface = number(m.subsurface_weight);
@@ -160,8 +170,7 @@ struct OpenPbrShares {
         left -= metal;
         glass = left * lobe.transmission;
         dielectric = left - glass;
-        double below = t.dielectric->loss(lobe.metal.facets, wo);
-        if (t.film.dielectric) below = pass_film(t, lobe.metal.facets, wo);
+        const double below = passed(lobe, wo);
         diffuse = dielectric * below;
         p_metal = metal * max_component(lobe.metal.mean_fresnel * lobe.metal.tint);
         p_glass = glass;
@@ -175,10 +184,20 @@ struct OpenPbrShares {
     }
 
 private:
-    /// The mean over the channels of what passes.
-    double pass_film(const OpenPbrTables& t, const Microfacets& facets, Vec3d wo) {
-        const double r = t.film.energy[0]->loss(facets, wo), g = t.film.energy[1]->loss(facets, wo),
-                     b = t.film.energy[2]->loss(facets, wo), mean = (r + g + b) / 3;
+    /// What passes the dielectric boundary, with a film the mean over the channels. That is linear in what facets
+    /// reflect, so it is interpolated with the weights that those colours have, and nothing is gained or lost by that.
+    double passed(const OpenPbrBsdf& lobe, Vec3d wo) {
+        const OpenPbrTables& t = *lobe.tables;
+        const Microfacets& facets = lobe.metal.facets;
+        const double weight = t.film.dielectric ? lobe.film.weight : 0;
+        const double bare = weight < 1 ? t.dielectric->loss(facets, wo) : 0;
+        if (weight == 0) return bare;
+        const double f = lobe.film.thickness.f;
+        Vec3d loss[2];
+        t.film.energy->losses(facets, wo, lobe.film.thickness.first, {loss, f > 0 ? 2u : 1u});
+        const Vec3d film = loss[0] * (1 - f) + loss[1] * f;
+        const double r = bare + (film.x - bare) * weight, g = bare + (film.y - bare) * weight,
+                     b = bare + (film.z - bare) * weight, mean = (r + g + b) / 3;
         if (mean > 0)
             diffuse_tint = {static_cast<float>(r / mean), static_cast<float>(g / mean), static_cast<float>(b / mean)};
         return mean;
@@ -186,13 +205,14 @@ private:
 };
 
 /// One bounce off the facets of a dielectric; what is missing passes.
-inline LocalEval eval_dielectric(const Microfacets& facets, double eta, const FilmOnDielectric* film, Vec3d wo,
-                                 Vec3d wi) {
+inline LocalEval eval_dielectric(const Microfacets& facets, double eta, Vec3d wo, Vec3d wi,
+                                 const FilmOnDielectric* films = nullptr, const PointFilm& film = {}) {
     const Ggx ggx = facets.ggx();
     const Vec3d h = normalize(wo + wi);
     const double d = ggx.density(h) / 4;
-    if (film)
-        return {film->reflectance(dot(wo, h)) * static_cast<float>(d * ggx.masking_over_cosine(wo, wi)),
+    if (films)
+        return {dielectric_reflectance(dot(wo, h), eta, films, film) *
+                    static_cast<float>(d * ggx.masking_over_cosine(wo, wi)),
                 d * ggx.visible_over_projected(wo)};
     const auto f = static_cast<float>(fresnel_dielectric(dot(wo, h), eta) * d * ggx.masking_over_cosine(wo, wi));
     return {{f, f, f}, d * ggx.visible_over_projected(wo)};
@@ -245,11 +265,12 @@ inline LocalEval eval_shares(const OpenPbrBsdf& lobe, const OpenPbrShares& s, Ve
         if (s.p_fuzz > 0)
             out.diffuse = add({t.fuzz->eval(lobe.fuzz_roughness, wo, wi), warp::kHemispherePdf}, s.fuzz, s.p_fuzz,
                               lobe.fuzz_color);
-        if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, nullptr, wo, wi), s.coat, s.p_coat, {1, 1, 1});
+        if (s.p_coat > 0) add(eval_dielectric(lobe.coat, t.coat_eta, wo, wi), s.coat, s.p_coat, {1, 1, 1});
         if (s.p_metal > 0) add(eval_local(lobe.metal, wo, wi, outside), s.metal, s.p_metal, below);
         if (s.p_dielectric > 0)
-            add(eval_dielectric(lobe.metal.facets, t.eta_outside, t.film.dielectric.get(), wo, wi), s.dielectric,
-                s.p_dielectric, lobe.specular_color * below);
+            add(eval_dielectric(lobe.metal.facets, t.eta_outside, wo, wi,
+                                lobe.film.weight > 0 ? t.film.dielectric.get() : nullptr, lobe.film),
+                s.dielectric, s.p_dielectric, lobe.specular_color * below);
         if (s.p_diffuse > 0)
             out.diffuse =
                 out.diffuse + add({eval_open_pbr_diffuse(lobe, wo, wi), open_pbr_diffuse_pdf(lobe, wo.z, wi.z)},

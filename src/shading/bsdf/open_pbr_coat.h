@@ -14,7 +14,7 @@ struct OpenPbrCoatAlone {
 };
 inline LocalEval eval_local(const OpenPbrCoatAlone& coat, Vec3d wo, Vec3d wi, bool) {
     if (!(wi.z > 0)) return {};
-    LocalEval out = eval_dielectric(coat.lobe.coat, coat.lobe.tables->coat_eta, nullptr, wo, wi);
+    LocalEval out = eval_dielectric(coat.lobe.coat, coat.lobe.tables->coat_eta, wo, wi);
     out.f_cos = out.f_cos * static_cast<float>(coat.share);
     return out;
 }

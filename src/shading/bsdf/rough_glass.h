@@ -17,18 +17,24 @@ namespace steradian {
 inline bool lobe_is_specular(const RoughGlassBsdf&) { return false; }
 inline bool lobe_has_direction(const RoughGlassBsdf& lobe) { return lobe.facets.alpha_x != lobe.facets.alpha_y; }
 
+/// Of light from outside, at the cosine to a facet. `films`: null for none.
+inline Rgb dielectric_reflectance(double cosine, double eta, const FilmOnDielectric* films, const PointFilm& film) {
+    if (films && film.weight == 1) return films->reflectance(cosine, film.thickness);
+    const auto f = static_cast<float>(fresnel_dielectric(cosine, eta));
+    const Rgb bare{f, f, f};
+    return films ? bare * (1 - film.weight) + films->reflectance(cosine, film.thickness) * film.weight : bare;
+}
+
 /// Of light from outside, at the cosine to a facet.
 inline Rgb outside_reflectance(const RoughGlassBsdf& lobe, double cosine) {
-    if (lobe.film) return lobe.film->reflectance(cosine);
-    const auto f = static_cast<float>(fresnel_dielectric(cosine, static_cast<double>(lobe.eta)));
-    return {f, f, f};
+    return dielectric_reflectance(cosine, static_cast<double>(lobe.eta), lobe.films, lobe.film);
 }
 
 /// With a film, from either side: what it reflects is that of the other side of the refracted light.
 inline Rgb film_reflectance(const RoughGlassBsdf& lobe, double cosine, double eta, bool outside) {
-    if (outside) return lobe.film->reflectance(cosine);
+    if (outside) return outside_reflectance(lobe, cosine);
     const double squared = 1 - (1 - cosine) * (1 + cosine) / (eta * eta);
-    return squared > 0 ? lobe.film->reflectance(std::sqrt(squared)) : Rgb{1, 1, 1};
+    return squared > 0 ? outside_reflectance(lobe, std::sqrt(squared)) : Rgb{1, 1, 1};
 }
 
 /// The probability that a facet reflects, and the colours that go with either choice.
@@ -37,7 +43,7 @@ struct FacetChoice {
     Rgb reflected{1, 1, 1}, passed{1, 1, 1};
 };
 inline FacetChoice facet_choice(const RoughGlassBsdf& lobe, double cosine, double eta, bool outside) {
-    if (!lobe.film) return {fresnel_dielectric(cosine, eta)};
+    if (!lobe.films) return {fresnel_dielectric(cosine, eta)};
     const Rgb r = film_reflectance(lobe, cosine, eta, outside);
     const float mean = (r.r + r.g + r.b) / 3;
     FacetChoice out{static_cast<double>(mean)};
@@ -96,7 +102,7 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         const double facets = (reflected ? choice.reflects : 1 - choice.reflects) * ggx.density(*h) * jacobian;
         f_cos = facets * ggx.masking_over_cosine(wo, wi);
         pdf = (1 - l.lost) * facets * ggx.visible_over_projected(wo);
-        if (lobe.film) {
+        if (lobe.films) {
             by_film = (reflected ? choice.reflected : choice.passed) * static_cast<float>(f_cos * radiance_scale);
             f_cos = 0;
         }
@@ -111,7 +117,7 @@ inline LocalEval eval_local(const RoughGlassBsdf& lobe, Vec3d wo, Vec3d wi, bool
         pdf += l.lost * share * WideLobe(lobe.facets).pdf(cosine);
     }
     const auto grey = static_cast<float>(f_cos * radiance_scale);
-    return {lobe.film ? tint * (Rgb{grey, grey, grey} + by_film) : tint * grey, pdf, radiance_scale};
+    return {lobe.films ? tint * (Rgb{grey, grey, grey} + by_film) : tint * grey, pdf, radiance_scale};
 }
 
 inline std::optional<Vec3d> sample_local(const RoughGlassBsdf& lobe, Vec3d wo, bool outside, float uc, Vec2 u) {
