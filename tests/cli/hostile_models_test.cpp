@@ -18,11 +18,22 @@ protected:
         SCOPED_TRACE(text);
         spit(folder_.file("model.glb"), bytes);
         const Outcome o = steradian(arguments);
-        EXPECT_EQ(o.signal, 0);
         const std::string line = o.err.substr(0, o.err.find('\n'));
         EXPECT_EQ(o.code == 3 || o.code == 4, !accepted) << o.code << o.err;
         EXPECT_EQ(line.starts_with("model.glb") && line.find(": error: ") != std::string::npos, !accepted) << line;
         EXPECT_NE((accepted ? o.out : line).find(text), std::string::npos) << line;
+        expect_bounds(o);
+        if (arguments[0] != "info") return;
+        // Whoever looks for mistakes in it is told the same, or gets a list.
+        std::vector<std::string> looking = arguments;
+        looking[0] = "lint";
+        const Outcome found = steradian(looking);
+        EXPECT_EQ(found.code, o.code) << found.err;
+        EXPECT_TRUE(accepted || found.err == o.err) << found.err;
+        expect_bounds(found);
+    }
+    static void expect_bounds(const Outcome& o) {
+        EXPECT_EQ(o.signal, 0);
         if (kSanitized) return;
         EXPECT_LE(o.peak_bytes, uint64_t(512) << 20);
         EXPECT_LE(o.cpu_seconds, 2.0);
