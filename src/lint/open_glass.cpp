@@ -178,9 +178,9 @@ private:
                        "close it, or make the sheet 'thin_glass' (open_pbr: geometry_thin_walled)");
     }
 
-    /// Triangles of neighbours and pairs of boxes in all, and loose edges: some seconds.
+    /// Triangles of neighbours and pairs of boxes in all, and loose edges: about a second.
     static constexpr uint64_t kBudget = uint64_t(1) << 24;
-    static constexpr size_t kMostRims = size_t(1) << 19;
+    static constexpr size_t kMostRims = size_t(1) << 17;
 
     Check& check_;
     const Scene& scene_;
