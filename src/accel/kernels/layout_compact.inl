@@ -59,10 +59,15 @@ inline CompactBlock block_of(const LevelView& level, uint32_t place) {
 inline void gather_corners(const LevelView& level, const uint32_t* places, Floats corner[3][3]) {
     alignas(64) float p[3][3][kGroup];
     for (uint32_t k = 0; k < kGroup; ++k) {
+        // CompactBlock::corner, with what is the same for all corners done once.
         const CompactBlock block = block_of(level, places[k]);
+        const uint32_t lane = places[k] % kBlock, vertices = block.vertices(),
+                       second = block.many() ? CompactBlock::kSecondVector : 0;
+        const char* const first = block.at + sizeof(uint32_t);
         for (uint32_t c = 0; c < 3; ++c) {
-            const Vec3 vertex = block.corner(c, places[k] % kBlock);
-            for (int axis = 0; axis < 3; ++axis) p[c][axis][k] = vertex[axis];
+            const uint32_t vertex = block.index(c, lane) + (c == 2 ? second : 0);
+            for (uint32_t axis = 0; axis < 3; ++axis)
+                std::memcpy(&p[c][axis][k], first + sizeof(float) * (vertex + axis * vertices), sizeof(float));
         }
     }
     for (int c = 0; c < 3; ++c)
