@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <span>
 
 #include "base/names.h"
 #include "base/text.h"
@@ -39,7 +40,15 @@ void grow(SceneSummary& s, const Instance& instance, Vec3 lo, Vec3 hi) {
                                   Vec3{corner & 1 ? hi.x : lo.x, corner & 2 ? hi.y : lo.y, corner & 4 ? hi.z : lo.z})));
 }
 
-SceneSummary summarize(const Scene& scene) {
+/// What the file has of its own: not the studio that a bare model gets.
+LoadedScene::OwnElements own_elements(const LoadedScene& loaded) {
+    const Scene& s = loaded.scene;
+    return loaded.before_studio.value_or(LoadedScene::OwnElements{
+        s.instances.size(), s.shapes.size(), s.materials.size(), s.textures.size(), s.lights.size()});
+}
+
+SceneSummary summarize(const LoadedScene& loaded) {
+    const Scene& scene = loaded.scene;
     SceneSummary s;
     std::vector<SceneSummary> meshes(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
@@ -50,7 +59,7 @@ SceneSummary summarize(const Scene& scene) {
         s.geometry_bytes += mesh_bytes(m);
     }
     for (const RawImage& image : scene.images) s.texel_bytes += image.data.size();
-    for (const Instance& i : scene.instances) {
+    for (const Instance& i : std::span(scene.instances).first(own_elements(loaded).instances)) {
         const Shape& shape = scene.shapes[index(i.shape)];
         if (const auto* id = std::get_if<MeshId>(&shape)) {
             const SceneSummary& m = meshes[index(*id)];
@@ -92,33 +101,36 @@ Result<LintReport> quick_findings(const LoadedScene& loaded) {
 
 void print_text(const std::string& path, const LoadedScene& loaded, const SceneSummary& s, const LintReport& findings) {
     const Scene& scene = loaded.scene;
+    const LoadedScene::OwnElements own = own_elements(loaded);
     const RenderSettings& r = loaded.settings;
     std::cout << fmt::format("{}: a scene\n", escape_for_display(path, 4096));
     std::cout << fmt::format("  hash       {}\n", scene_hash(scene));
-    std::cout << fmt::format("  objects    {} ({} shapes, {} meshes)\n", scene.instances.size(), scene.shapes.size(),
+    std::cout << fmt::format("  objects    {} ({} shapes, {} meshes)\n", own.instances, own.shapes,
                              scene.meshes.size());
     std::cout << fmt::format("  triangles  {} stored, {} placed, {} vertices\n", s.triangles, s.placed_triangles,
                              s.vertices);
     if (s.lo.x <= s.hi.x)
         std::cout << fmt::format("  bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", s.lo.x,
                                  s.lo.y, s.lo.z, s.hi.x, s.hi.y, s.hi.z);
-    std::cout << fmt::format("  materials  {}, textures {}, images {}\n", scene.materials.size(), scene.textures.size(),
+    std::cout << fmt::format("  materials  {}, textures {}, images {}\n", own.materials, own.textures,
                              scene.images.size());
-    std::cout << fmt::format("  lights     {}", scene.lights.size());
+    const auto lights = std::span(scene.lights).first(own.lights);
+    std::cout << fmt::format("  lights     {}", lights.size());
     for (size_t kind = 0; kind < std::variant_size_v<Light>; ++kind) {
-        const auto n =
-            std::count_if(scene.lights.begin(), scene.lights.end(), [&](const Light& l) { return l.index() == kind; });
-        if (n)
-            std::cout << fmt::format(", {} {}", n,
-                                     kind_of(*std::find_if(scene.lights.begin(), scene.lights.end(),
-                                                           [&](const Light& l) { return l.index() == kind; })));
+        const auto is_that = [&](const Light& l) { return l.index() == kind; };
+        if (const auto n = std::count_if(lights.begin(), lights.end(), is_that))
+            std::cout << fmt::format(", {} {}", n, kind_of(*std::find_if(lights.begin(), lights.end(), is_that)));
     }
+    if (loaded.before_studio) std::cout << (lights.empty() ? "" : ";") << " (a neutral studio is added)";
     std::cout << "\n  cameras    " << scene.cameras.size();
     for (size_t i = 0; i < scene.cameras.size(); ++i)
         std::cout << (i ? ", " : ": ") << escape_for_display(camera_name(scene, i));
     if (!loaded.animations.empty()) std::cout << "\n  animations " << loaded.animations.size();
     for (size_t i = 0; i < loaded.animations.size(); ++i)
         std::cout << (i ? ", " : ": ") << escape_for_display(loaded.animations[i]);
+    if (!loaded.variants.empty()) std::cout << "\n  variants   " << loaded.variants.size();
+    for (size_t i = 0; i < loaded.variants.size(); ++i)
+        std::cout << (i ? ", " : ": ") << escape_for_display(loaded.variants[i]);
     const auto bytes = [](uint64_t n) { return format_quantity(double(n)) + "B"; };
     const MemoryEstimate m = estimate_memory(scene, r);
     std::cout << fmt::format("\n  memory     {} of geometry, {} of texels\n", bytes(s.geometry_bytes),
@@ -138,17 +150,16 @@ void print_text(const std::string& path, const LoadedScene& loaded, const SceneS
 
 void print_json(const std::string& path, const LoadedScene& loaded, const SceneSummary& s, const LintReport& findings) {
     const Scene& scene = loaded.scene;
+    const LoadedScene::OwnElements own = own_elements(loaded);
     rapidjson::StringBuffer buffer;
     JsonWriter w(buffer);
     const auto number = [&](const char* key, uint64_t value) { w.Key(key), w.Uint64(value); };
     const auto text = [&](const char* key, std::string_view value) { write_field(w, key, value); };
     w.StartObject();
     text("file", path), text("kind", "scene"), text("hash", scene_hash(scene));
-    number("objects", scene.instances.size()), number("shapes", scene.shapes.size()),
-        number("meshes", scene.meshes.size());
+    number("objects", own.instances), number("shapes", own.shapes), number("meshes", scene.meshes.size());
     number("triangles", s.triangles), number("placed_triangles", s.placed_triangles), number("vertices", s.vertices);
-    number("materials", scene.materials.size()), number("textures", scene.textures.size()),
-        number("images", scene.images.size());
+    number("materials", own.materials), number("textures", own.textures), number("images", scene.images.size());
     number("geometry_bytes", s.geometry_bytes), number("texel_bytes", s.texel_bytes);
     const MemoryEstimate m = estimate_memory(scene, loaded.settings);
     w.Key("memory"), w.StartObject();
@@ -156,13 +167,17 @@ void print_json(const std::string& path, const LoadedScene& loaded, const SceneS
     number("picture_bytes", m.picture), number("peak_bytes", m.peak());
     w.EndObject();
     w.Key("lights"), w.StartArray();
-    for (const Light& light : scene.lights) w.String(kind_of(light));
+    for (const Light& light : std::span(scene.lights).first(own.lights)) w.String(kind_of(light));
     w.EndArray();
+    w.Key("studio"), w.Bool(loaded.before_studio.has_value());
     w.Key("cameras"), w.StartArray();
     for (size_t i = 0; i < scene.cameras.size(); ++i) write_text(w, camera_name(scene, i));
     w.EndArray();
     w.Key("animations"), w.StartArray();
     for (const std::string& name : loaded.animations) write_text(w, name);
+    w.EndArray();
+    w.Key("variants"), w.StartArray();
+    for (const std::string& name : loaded.variants) write_text(w, name);
     w.EndArray();
     if (s.lo.x <= s.hi.x) {
         w.Key("bounds"), w.StartArray();
@@ -192,7 +207,7 @@ Status print_scene_info(const std::string& path, bool json) {
     if (!loaded) return loaded.error();
     const auto findings = quick_findings(*loaded);
     if (!findings) return findings.error();
-    const SceneSummary summary = summarize(loaded->scene);
+    const SceneSummary summary = summarize(*loaded);
     json ? print_json(path, *loaded, summary, *findings) : print_text(path, *loaded, summary, *findings);
     return Ok{};
 }

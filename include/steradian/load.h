@@ -89,6 +89,12 @@ struct LoadedScene {
     /// Where LoadOptions::locations asked for them.
     SceneLocations locations = {};
     std::vector<std::string> animations = {};  ///< their names, or "animation 3"
+    std::vector<std::string> variants = {};    ///< of KHR_materials_variants, as LoadOptions::gltf_variant takes them
+    /// Where a bare model was given a studio: how many elements of the scene are its own. Those behind are the studio.
+    struct OwnElements {
+        size_t instances, shapes, materials, textures, lights;
+    };
+    std::optional<OwnElements> before_studio = std::nullopt;
     /// Every file that was read, the scene itself first: outputs must not be among them.
     std::vector<std::string> files;
 };

@@ -1,5 +1,7 @@
 #include "steradian/load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <new>
 #include <stdexcept>
@@ -92,18 +94,49 @@ bool is_decoration(const Light& light) {
     return area && area->texture;
 }
 
+Rgb strength(const PointLight& l) { return l.intensity; }
+Rgb strength(const SpotLight& l) { return l.intensity; }
+Rgb strength(const GoniometricLight& l) { return l.intensity; }
+Rgb strength(const DirectionalLight& l) { return l.irradiance; }
+Rgb strength(const AreaLight& l) { return l.radiance; }
+Rgb strength(const EnvironmentLight& l) { return l.radiance; }
+
+bool lights_the_model(const Light& light) {
+    return !is_decoration(light) && !is_black(std::visit([](const auto& l) { return strength(l); }, light));
+}
+
+/// A camera and lamps stand some ten times the model's size away.
+void check_room_around(const Scene& scene, const std::string& path) {
+    const Extent extent = extent_of(scene);
+    const double reach = length(extent.center) + 10 * extent.radius;
+    if (reach <= kMaxCoordinate) return;
+    throw json::ReadFailure{
+        Error{ErrorCode::bad_input,
+              fmt::format("the model is {:.3g} m large and {:.3g} m from the origin: there is no room around it, "
+                          "coordinates go to {:.0e} m",
+                          2 * extent.radius, length(extent.center), kMaxCoordinate),
+              {path, 0, 0},
+              {},
+              "look at the scales and translations of its nodes"}};
+}
+
 /// A model without a camera gets one; one that nothing shines on gets the studio, unless the caller chose what is
 /// around it. An author's own camera may stand below the model, so then there is no floor.
-void complete(LoadedScene& loaded, Assets& assets, const LoadOptions& options) {
+void complete(LoadedScene& loaded, Assets& assets, const std::string& path, const LoadOptions& options) {
     const std::vector<Light>& lights = loaded.scene.lights;
-    const bool dark = std::all_of(lights.begin(), lights.end(), is_decoration) && !options.environment.replace;
+    const bool dark = std::none_of(lights.begin(), lights.end(), lights_the_model) && !options.environment.replace;
     const bool framed = loaded.scene.cameras.empty() || options.turn;
+    if (framed || dark) check_room_around(loaded.scene, path);
     double turn = 0;  // of the camera about +Y
     if (options.turn)
         add_turntable_camera(loaded, assets, *options.turn, aspect(loaded, options)), turn = -*options.turn;
     else if (framed)
         turn = add_framing_camera(loaded, assets, aspect(loaded, options));
-    if (dark) add_studio(loaded, assets, framed, turn);
+    if (!dark) return;
+    const Scene& scene = loaded.scene;
+    loaded.before_studio = {scene.instances.size(), scene.shapes.size(), scene.materials.size(), scene.textures.size(),
+                            scene.lights.size()};
+    add_studio(loaded, assets, framed, turn);
 }
 
 void remove_environment(Scene& scene) {
@@ -137,7 +170,7 @@ Result<LoadedScene> load_model_file(const std::string& path, const LoadOptions& 
     const auto placed = assets.place(*model, {});
     if (!placed) return about_the_model(placed.error());
     if (placed->count == 0) return about_file(path, ErrorCode::bad_input, nothing_to_render(assets.model(*model)));
-    complete(loaded, assets, options);
+    complete(loaded, assets, path, options);
     return loaded;
 }
 
@@ -148,7 +181,7 @@ Result<LoadedScene> load_gltf_file(const std::string& path, const LoadOptions& o
     LoadedScene loaded = gltf::load(*bytes, path, folder, options);
     loaded.files.insert(loaded.files.begin(), path);
     Assets assets(loaded, folder, options);
-    complete(loaded, assets, options);
+    complete(loaded, assets, path, options);
     return loaded;
 }
 

@@ -38,11 +38,18 @@ struct Check {
     const RenderSettings& settings;
     Findings& out;
     std::span<const Element> consumed;  ///< used, although nothing in the scene says so
+    uint32_t own_instances;             ///< those behind are the studio of a bare model
     World world;
     Bodies bodies;
 
-    Check(const Scene& s, const RenderSettings& r, Findings& f, std::span<const Element> c)
-        : scene(s), settings(r), out(f), consumed(c), world(s), bodies(s, world) {}
+    Check(const Scene& s, const RenderSettings& r, Findings& f, std::span<const Element> c, size_t own)
+        : scene(s),
+          settings(r),
+          out(f),
+          consumed(c),
+          own_instances(static_cast<uint32_t>(own)),
+          world(s),
+          bodies(s, world) {}
 
     /// "material 'gold'" or "material 3", for messages.
     std::string name(Element element) const;

@@ -53,7 +53,7 @@ bool is_backdrop(const Check& check, uint32_t instance, const Box& rest) {
 
 /// One object a thousand times as large as all the others together.
 void look_for_giants(Check& check) {
-    const size_t count = check.scene.instances.size();
+    const uint32_t count = check.own_instances;
     uint32_t giant = 0;
     for (uint32_t i = 1; i < count; ++i)
         if (check.world.box(i).size() > check.world.box(giant).size()) giant = i;

@@ -69,6 +69,24 @@ TEST_F(AnimationCommand, InfoNamesThem) {
     EXPECT_NE(json.out.find("\"animations\""), std::string::npos);
 }
 
+TEST_F(AnimationCommand, InfoTellsTheFileFromItsStudioAndNamesVariants) {
+    GltfBuilder b;
+    const int p = b.floats("VEC3", 3, kTriangle);
+    spit(folder_.file("chair.glb"),
+         b.binary("\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": " + std::to_string(p) +
+                  "}}]}], \"nodes\": [{\"mesh\": 0}], \"extensions\": {\"KHR_materials_variants\": {\"variants\": "
+                  "[{\"name\": \"oak\"}, {\"name\": \"ash\"}]}}"));
+    const Outcome text = steradian({"info", "chair.glb"});
+    EXPECT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find("objects    1 (1 shapes, 1 meshes)"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("lights     0 (a neutral studio is added)"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("variants   2: oak, ash"), std::string::npos) << text.out;
+    const std::string json = steradian({"info", "chair.glb", "--json"}).out;
+    EXPECT_NE(json.find("\"studio\": true"), std::string::npos) << json;
+    EXPECT_NE(json.find("\"variants\": [\n        \"oak\",\n        \"ash\"\n    ]"), std::string::npos) << json;
+    EXPECT_NE(json.find("\"lights\": []"), std::string::npos) << json;
+}
+
 TEST_F(AnimationCommand, ReplayShowsTheSameMoment) {
     const std::vector<std::string> moment{"--animation", "walk", "--frame-time", "0.25"};
     const auto replay = [&](std::vector<std::string> more) {

@@ -80,6 +80,48 @@ TEST_F(GltfFiles, EmissiveTexturesShine) {
     EXPECT_EQ(with_material("\"emissiveFactor\": [1, 1, 1]").scene.lights.size(), 1u);
 }
 
+/// What a file has of its own is told from the studio around it; lamps without strength do not keep that away.
+TEST_F(GltfFiles, DarkModelsStandInAStudio) {
+    const auto lit_by = [&](const std::string& light) {
+        std::string text = with_buffer("a b.bin");
+        text.insert(text.find("\"mesh\": 0"), "\"extensions\": {\"KHR_lights_punctual\": {\"light\": 0}}, ");
+        text.pop_back();
+        write(folder_.file("scene/m.gltf"),
+              text + ", \"extensions\": {\"KHR_lights_punctual\": {\"lights\": [" + light + "]}}}");
+        return load_scene(folder_.file("scene/m.gltf")).value();
+    };
+    const LoadedScene lit = lit_by("{\"type\": \"point\", \"intensity\": 1e-3}");
+    EXPECT_EQ(lit.scene.lights.size(), 1u);
+    EXPECT_FALSE(lit.before_studio);
+    for (const char* dark :
+         {"{\"type\": \"point\", \"intensity\": 0}", "{\"type\": \"directional\", \"color\": [0, 0, 0]}"}) {
+        const LoadedScene loaded = lit_by(dark);
+        EXPECT_EQ(loaded.scene.lights.size(), 4u) << dark;
+        ASSERT_TRUE(loaded.before_studio) << dark;
+        EXPECT_EQ(loaded.before_studio->lights, 1u);
+        EXPECT_EQ(loaded.before_studio->instances, lit.scene.instances.size());
+        EXPECT_EQ(loaded.before_studio->shapes, lit.scene.shapes.size());
+        EXPECT_EQ(loaded.before_studio->materials, lit.scene.materials.size());
+        EXPECT_EQ(loaded.before_studio->textures, lit.scene.textures.size());
+    }
+}
+
+/// Without room for a camera and lamps the message is of the model, not of what would have been put there.
+TEST_F(GltfFiles, ModelsAsLargeAsAllSpaceAreRefused) {
+    for (const auto& [place, accepted] :
+         {std::pair("\"scale\": [1e13, 1e13, 1e13]", true), std::pair("\"scale\": [1e20, 1e20, 1e20]", false),
+          std::pair("\"translation\": [0, 1e25, 0]", false)}) {
+        std::string text = with_buffer("a b.bin");
+        text.insert(text.find("\"mesh\": 0"), std::string(place) + ", ");
+        write(folder_.file("scene/m.gltf"), text);
+        const auto loaded = load_scene(folder_.file("scene/m.gltf"));
+        ASSERT_EQ(loaded.ok(), accepted) << place;
+        if (accepted) continue;
+        EXPECT_TRUE(loaded.error().message.starts_with("the model is ")) << loaded.error().str();
+        EXPECT_EQ(loaded.error().where.file, folder_.file("scene/m.gltf"));
+    }
+}
+
 TEST_F(GltfFiles, NamesOutsideAreRefusedUnlessAllowed) {
     const std::string outside = folder_.file("outside.bin");
     for (const std::string& uri : {std::string("../outside.bin"), std::string("%2e%2e/outside.bin"), outside,

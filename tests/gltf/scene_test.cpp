@@ -202,8 +202,10 @@ TEST(GltfMaterial, UnlitOnesAreThereAsFarAsTheirAlphaSays) {
         "{\"KHR_materials_unlit\": {}}";
     const LoadedScene opaque = with_material(unlit), blended = with_material(unlit + ", \"alphaMode\": \"BLEND\""),
                       masked = with_material(unlit + ", \"alphaMode\": \"MASK\", \"alphaCutoff\": 0.3");
-    for (const LoadedScene* loaded : {&opaque, &blended, &masked})
+    for (const LoadedScene* loaded : {&opaque, &blended, &masked}) {
         EXPECT_EQ(std::get<AreaLight>(loaded->scene.lights.at(0)).radiance, (Rgb{0.1f, 0.2f, 0.3f}));
+        EXPECT_TRUE(std::get<AreaLight>(loaded->scene.lights.at(0)).two_sided);  // a colour, from behind as well
+    }
     (void)material_of<DiffuseMaterial>(opaque);
     const auto blend = material_of<OpenPbrMaterial>(blended), mask = material_of<OpenPbrMaterial>(masked);
     EXPECT_EQ(blend.geometry_opacity.value, 0.4f);

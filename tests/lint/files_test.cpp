@@ -1,4 +1,5 @@
 // Findings say where in which file: line and column, JSON pointer, byte; and what readers say is among them.
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -7,6 +8,8 @@
 
 namespace steradian::test {
 namespace {
+
+using Lines = std::vector<std::string>;
 
 class LintFiles : public testing::Test {
 protected:
@@ -31,7 +34,22 @@ protected:
     TemporaryFolder folder_;
 };
 
-using Lines = std::vector<std::string>;
+/// The studio of a bare model is as large as the largest object: it is not what that is compared with.
+TEST_F(LintFiles, GiantsInAStudio) {
+    const auto chairs = [](const std::string& scale) {
+        std::string text;
+        for (const std::string& s : {std::string("1"), scale})
+            text += "v 0 0 0\nv " + s + " 0 0\nv 0 " + s + " 0\nv 0 0 " + s + "\n";
+        return "mtllib ab.mtl\n" + text +
+               "usemtl a\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nusemtl b\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    };
+    const auto of_scale = [](const Lines& lines) {
+        return std::count_if(lines.begin(), lines.end(), [](const std::string& l) { return l.ends_with(" scale"); });
+    };
+    spit(folder_.file("ab.mtl"), "newmtl a\nKd 0.5 0 0\nnewmtl b\nKd 0 0.5 0\n");
+    EXPECT_EQ(of_scale(lines("near.obj", chairs("900"))), 0);
+    EXPECT_EQ(of_scale(lines("giant.obj", chairs("1100"))), 1);
+}
 
 TEST_F(LintFiles, OurOwnFormat) {
     EXPECT_EQ(

@@ -139,17 +139,23 @@ void check_extensions(Context& context, const Object& root) {
     });
 }
 
-uint32_t find_variant(const Context& context, std::string_view name) {
-    std::vector<std::string_view> names;
+std::vector<std::string> variant_names(const Context& context) {
+    std::vector<std::string> names;
     for (const Value value : context.tables.variants.elements)
-        names.push_back(Object(context.source, value, "a variant").string_or("name", ""));
+        names.emplace_back(Object(context.source, value, "a variant").string_or("name", ""));
+    return names;
+}
+
+uint32_t find_variant(const Context& context, std::string_view name) {
+    const std::vector<std::string> names = variant_names(context);
+    const std::vector<std::string_view> views(names.begin(), names.end());
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
     throw json::ReadFailure{Error{ErrorCode::usage,
                                   "there is no variant called " + quoted(name),
                                   {context.source.name(), 0, 0},
                                   {},
-                                  names.empty() ? "the file has no variants" : suggestion(name, names)}};
+                                  names.empty() ? "the file has no variants" : suggestion(name, views)}};
 }
 
 std::string name_of(const Object& element, std::string_view what, uint32_t number) {

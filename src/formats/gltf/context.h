@@ -96,6 +96,8 @@ std::string remedy(std::string_view extension);
 /// Fails when the file requires an extension that is not there; reports those that it uses only.
 void check_extensions(Context& context, const Object& root);
 
+/// As the file has them; those without a name are empty.
+std::vector<std::string> variant_names(const Context& context);
 /// The variant of that name among those of the file; fails where there is none.
 uint32_t find_variant(const Context& context, std::string_view name);
 

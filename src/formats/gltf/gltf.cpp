@@ -37,6 +37,7 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     Assets assets(loaded, folder, options);
     Context context(source, tables, options, loaded, assets);
     check_extensions(context, root);
+    loaded.variants = variant_names(context);
     if (!options.gltf_variant.empty()) context.variant = find_variant(context, options.gltf_variant);
     Buffers buffers(context, container.binary);
     Accessors accessors(context, buffers);

@@ -241,7 +241,8 @@ Look Materials::read(const Object& material, VertexColors colors, const std::str
     if (!material.extension("KHR_materials_unlit")) read_normals(material, r);
     read_extensions(material, r);
     Look out = finish(r, name);
-    out.two_sided = material.boolean_or("doubleSided", false);
+    // A colour and no lamp: from behind as from the front, like every surface that does not shine.
+    out.two_sided = material.boolean_or("doubleSided", false) || r.unlit;
     return out;
 }
 
