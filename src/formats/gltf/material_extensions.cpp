@@ -10,16 +10,33 @@ namespace steradian::gltf {
 namespace {
 
 constexpr Range kNotNegative{0, 1e30};
+constexpr double kLargestFilmIor = 3;  ///< of OpenPBR
 
 /// The reflectance at normal incidence of a boundary with this index, and the other way round.
-double reflectance_of(double ior) {
+constexpr double reflectance_of(double ior) {
     const double f = (ior - 1) / (ior + 1);
     return f * f;
 }
 double ior_of(double reflectance) {
-    const double f = std::sqrt(min_of(reflectance, 0.66));  // of an index of 9.7
+    const double f = std::sqrt(reflectance);
     return (1 + f) / (1 - f);
 }
+
+/// What the index can say of a dielectric beside metal, where specular_weight would scale the metal as well: that of
+/// an index of 6.5, which times the index of a clearcoat is within OpenPBR's range.
+constexpr double kMostBesideMetal = reflectance_of(6.5);
+
+/// For what the index cannot say: any reflectance, by the weight of a high index.
+void reflect(OpenPbrMaterial& s, double reflectance) {
+    constexpr double kIor = 3, kReflectance = 0.25;
+    s.specular_ior = static_cast<float>(kIor);
+    s.specular_weight = static_cast<float>(reflectance / kReflectance);
+}
+
+/// Of the coat, seen from the base.
+double coat_index(const OpenPbrMaterial& s) { return 1 + (static_cast<double>(s.coat_ior) - 1) * s.coat_weight; }
+
+bool is_grey(Rgb c) { return c.r == c.g && c.g == c.b; }
 
 }  // namespace
 
@@ -53,41 +70,72 @@ void Materials::read_dispersion(const Object& dispersion, Reading& r) {
     r.surface.transmission_dispersion_abbe_number = static_cast<float>(20 / min_of(value, kMost));
 }
 
-/// The reflectance at normal incidence is that of the index times factor and colour. Where there is metal, of which the
-/// extension does not speak, the index says it all.
+/// 0 stands for an interface that reflects everything.
+double Materials::read_ior(const Object& material) {
+    constexpr double kLargest = 9.7;
+    const auto extension = material.extension("KHR_materials_ior");
+    const double ior = extension ? extension->number_or("ior", 1.5, kNotNegative) : 1.5;
+    if (ior == 0) return 0;
+    if (ior > kLargest || ior < 1)
+        context_.not_honoured("an index of refraction beyond 1 to 9.7 is taken as the nearer one",
+                              extension->offset_of("ior"));
+    return clamp_to(ior, 1.0, kLargest);
+}
+
+/// The reflectance at normal incidence is that of the index times the colour, at most 1 in each channel, times the
+/// factor. Metal, of which the extension does not speak, OpenPBR would scale and tint alike: where that matters the
+/// two become a mix.
 void Materials::read_specular(const Object& material, Reading& r) {
     OpenPbrMaterial& s = r.surface;
-    double ior = 1.5;
-    if (const auto extension = material.extension("KHR_materials_ior")) {
-        constexpr double kLargest = 9.7;
-        ior = extension->number_or("ior", 1.5, kNotNegative);
-        if (ior > kLargest || ior < 1)
-            context_.not_honoured("an index of refraction beyond 1 to 9.7 is taken as the nearer one",
-                                  extension->offset_of("ior"));
-        ior = ior == 0 ? kLargest : clamp_to(ior, 1.0, kLargest);
+    const double ior = read_ior(material), normal = ior == 0 ? 1 : reflectance_of(ior);
+    const auto specular = material.extension("KHR_materials_specular");
+    const bool all_metal = s.base_metalness.value == 1 && !s.base_metalness.texture;
+    Rgb color{1, 1, 1};
+    std::optional<TextureId> map;
+    if (specular) {
+        color = this->color(*specular, "specularColorFactor", color, kNotNegative.max);
+        if (!is_black(color) && !all_metal) map = texture(*specular, "specularColorTexture", Plane::color, r);
+    }
+    for (int c = 0; c < 3; ++c)
+        color[c] = static_cast<float>(min_of(static_cast<double>(color[c]), 1 / max_of(normal, 1e-30)));
+    const double most = max_component(color);
+    const double weight = (specular ? static_cast<double>(unit(*specular, "specularFactor", 1)) : 1) * most;
+    const bool index_says_it = !map && is_grey(color) && weight * normal <= kMostBesideMetal;
+    if (s.base_metalness.value > 0 && !all_metal && !index_says_it) {
+        r.metal = {s.base_metalness, s.base_color, {}};
+        s.base_metalness = {0};
     }
     s.specular_ior = static_cast<float>(ior);
-    const auto specular = material.extension("KHR_materials_specular");
-    if (!specular) return;
-    Rgb color = this->color(*specular, "specularColorFactor", {1, 1, 1}, kNotNegative.max);
-    const double most = max_component(color);
-    const double weight = static_cast<double>(unit(*specular, "specularFactor", 1)) * most;
-    if (most > 0 && s.base_metalness.value < 1) {
-        s.specular_color = {color * static_cast<float>(1 / most),
-                            texture(*specular, "specularColorTexture", Plane::color, r)};
+    if (s.base_metalness.value > 0) {
+        if (weight != 1 || normal > kMostBesideMetal)
+            s.specular_ior = static_cast<float>(ior_of(min_of(weight * normal, kMostBesideMetal)));
+    } else {
+        if (most > 0) s.specular_color = {color * static_cast<float>(1 / most), map};
         for (int c = 0; c < 3; ++c) s.specular_color.value[c] = min_of(s.specular_color.value[c], 1.0f);
-    }
-    if (s.base_metalness.value == 0)
         s.specular_weight = static_cast<float>(min_of(weight, 10.0));
-    else
-        s.specular_ior = static_cast<float>(ior_of(weight * reflectance_of(ior)));
-    if (weight > 0)
+        if (ior == 0 || weight > 10) reflect(s, weight * normal);
+    }
+    if (specular && weight > 0)
         read_weight(*specular, "specularTexture", Plane::alpha, r, [](OpenPbrMaterial& without) {
             if (without.base_metalness.value == 0)
                 without.specular_weight = 0;
             else
                 without.specular_ior = 1;
         });
+}
+
+/// OpenPBR looks at what lies below a coat from within the coat: a base of the coat's index would reflect nothing. In
+/// the extensions all layers lie in air as it were. Times the coat's index, base and film have the same ratios in it,
+/// and the film the same optical thickness. What transmits keeps its index, which is that of the body.
+OpenPbrMaterial Materials::below_coat(OpenPbrMaterial s) {
+    if (s.coat_weight == 0 || s.transmission_weight.value > 0) return s;
+    const double coat = coat_index(s), ior = s.specular_ior;
+    if (ior * coat > 10) reflect(s, s.specular_weight * reflectance_of(ior));
+    s.specular_ior = static_cast<float>(s.specular_ior * coat);
+    s.thin_film_ior = static_cast<float>(min_of(s.thin_film_ior * coat, kLargestFilmIor));
+    s.thin_film_thickness.minimum = static_cast<float>(s.thin_film_thickness.minimum / coat);
+    s.thin_film_thickness.maximum = static_cast<float>(s.thin_film_thickness.maximum / coat);
+    return s;
 }
 
 void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
@@ -151,12 +199,15 @@ void Materials::read_iridescence(const Object& iridescence, Reading& r) {
     s.thin_film_thickness.maximum = thickness("iridescenceThicknessMaximum", 400);
     s.thin_film_thickness.texture = texture(iridescence, "iridescenceThicknessTexture", Plane::green, r);
     if (s.thin_film_thickness.texture) s.thin_film_thickness.minimum = thickness("iridescenceThicknessMinimum", 100);
-    constexpr double kLargest = 3;
+    const double largest = s.transmission_weight.value > 0 ? kLargestFilmIor : kLargestFilmIor / coat_index(s);
     const double ior = iridescence.number_or("iridescenceIor", 1.3, kNotNegative);
-    if (ior < 1 || ior > kLargest)
-        context_.not_honoured("an index of a film beyond 1 to 3 is taken as the nearer one",
-                              iridescence.offset_of("iridescenceIor"));
-    s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, kLargest));
+    if (ior < 1 || ior > largest)
+        context_.not_honoured(
+            largest < kLargestFilmIor
+                ? "an index of a film below a clearcoat of more than 3 over the coat's, or of less than 1, is clamped"
+                : "an index of a film beyond 1 to 3 is taken as the nearer one",
+            iridescence.offset_of("iridescenceIor"));
+    s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, largest));
 }
 
 /// What the base scatters goes through the sheet instead, to that part: a thin wall whose subsurface scatters forward.

@@ -164,6 +164,7 @@ MaterialId Materials::make_split(const Reading& r, const std::string& name) {
     metal.surface.base_metalness = {1};
     metal.surface.base_color = r.metal->color;
     metal.surface.specular_weight = 1;
+    metal.surface.specular_ior = 1.5f;
     metal.surface.specular_color = {};
     const FloatInput& weight = r.metal->weight;
     if (!weight.texture && weight.value == 0) return make_plain(dielectric, name);
@@ -183,7 +184,7 @@ MaterialId Materials::make_plain(const Reading& r, const std::string& name) {
     const auto simple = r.unlit ? std::nullopt : make_simple(r, name);
     const MaterialId out = r.unlit  ? make_unlit(r, name)
                            : simple ? context_.assets.add_material(*simple, name)
-                                    : context_.assets.add_material(r.surface, name);
+                                    : context_.assets.add_material(below_coat(r.surface), name);
     if (r.normals) context_.loaded.scene.reliefs.push_back({out, *r.normals});
     return out;
 }

@@ -44,8 +44,8 @@ private:
         uint32_t grain_uv_set = 0;
         std::optional<TextureUse> base_color;
         bool unlit = false;
-        /// Of KHR_materials_pbrSpecularGlossiness: the part of the surface that is metal; the rest is as it stands
-        /// here, to the part `reflects` with its specular layer.
+        /// Where metal and dielectric are materials of their own: the part of the surface that is metal; the rest is
+        /// as it stands here, to the part `reflects` with its specular layer.
         struct MetalPart {
             FloatInput weight;
             ColorInput color;
@@ -95,7 +95,9 @@ private:
     void read_extensions(const Object& material, Reading& r);
     void read_transmission(const Object& material, Reading& r);
     void read_dispersion(const Object& dispersion, Reading& r);
+    double read_ior(const Object& material);
     void read_specular(const Object& material, Reading& r);
+    static OpenPbrMaterial below_coat(OpenPbrMaterial s);
     void read_diffuse_transmission(const Object& material, Reading& r);
     void read_clearcoat(const Object& clearcoat, Reading& r);
     void read_sheen(const Object& sheen, Reading& r);
