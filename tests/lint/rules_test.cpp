@@ -429,6 +429,16 @@ const Case kMeshCases[] = {
      [](LintScene& t) {
          t.place(Shape(Rectangle{{0, -2, 0}, {3, 0, 0}, {0, 0, -3}}), t.material(glass()));
      }},
+    {"LakeThatFacesDown", "",
+     [](LintScene& t) {
+         t.place(Shape(Rectangle{{0, -2, 0}, {3, 0, 0}, {0, 0, 3}}), t.material(glass()));
+     }},
+    {"ShelfOfTwoRectangles", "open-glass",
+     [](LintScene& t) {
+         const MaterialId m = t.material(glass());
+         t.place(Shape(Rectangle{{2, 0, 0}, {0.5f, 0, 0}, {0, 0, -0.5f}}), m);
+         t.place(Shape(Rectangle{{2, 0.5f, -0.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}}), m);
+     }},
     {"WavyLake", "",
      [](LintScene& t) {
          t.place(Mesh{{{-1, -2, -1}, {1, -1.9f, -1}, {0, -2, 1}}, {}, {}, {0, 2, 1}}, t.material(glass()));
