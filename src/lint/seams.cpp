@@ -11,7 +11,8 @@ namespace steradian::lint_detail {
 uint32_t Places::number_of(Vec3d p) {
     // Cells are larger than the distance, so that most points have to be looked for in one of them alone.
     const double size = 8 * distance_;
-    const auto cell = [&](double x) { return static_cast<int64_t>(std::floor(x / size)); };
+    // What is far larger than the glass may be more cells away than integers count.
+    const auto cell = [&](double x) { return static_cast<int64_t>(clamp_to(std::floor(x / size), -0x1p60, 0x1p60)); };
     const Vec3d lo = p - Vec3d{distance_, distance_, distance_}, hi = p + Vec3d{distance_, distance_, distance_};
     for (int64_t x = cell(lo.x); x <= cell(hi.x); ++x)
         for (int64_t y = cell(lo.y); y <= cell(hi.y); ++y)

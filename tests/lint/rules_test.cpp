@@ -225,6 +225,11 @@ const Case kMeshCases[] = {
      [](LintScene& t) {
          t.place(Shape(Rectangle{{0, -2, 0}, {3, 0, 0}, {0, 0, 3}}), t.material(glass()));
      }},
+    {"PaneInAVastFloor", "open-glass",
+     [](LintScene& t) {
+         t.place(Shape(Rectangle{{2, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), t.material(glass()));
+         t.place(Shape(Rectangle{{0, -0.5f, 0}, {9e14f, 0, 0}, {0, 0, -9e14f}}), MaterialId{0});
+     }},
     {"ShelfOfTwoRectangles", "open-glass",
      [](LintScene& t) {
          const MaterialId m = t.material(glass());
