@@ -14,6 +14,10 @@ namespace {
 constexpr double kTwoPi = 2 * std::numbers::pi;
 /// Of the light, above the mean: a sky that has less is even, and compensation would only make it coarse.
 constexpr double kLeastCompensated = 1e-3;
+/// Of a surface's irradiance, from what is above the mean: where it has less, the rest is worth its light samples.
+constexpr double kLeastShare = 0.25;
+/// A sky is about this many parts wide and half as many high, for the irradiance it casts.
+constexpr size_t kParts = 64;
 
 /// Texels as light: nothing below zero (texel() has already made 0 of what is not finite).
 Rgb light_texel(const RawImage& image, ColorSpace space, uint32_t x, uint32_t y) {
@@ -118,6 +122,58 @@ void EnvironmentTable::compensate() {
         }
     });
     if (!(compensated_.finish(w) > kLeastCompensated * complete_.rows.back())) compensated_ = {};
+    if (!compensated_.rows.empty()) above_ = share_above();
+}
+
+namespace {
+
+/// Neighbouring texels as one part, or a texel as several: about `wanted` parts along one side of an image.
+struct Division {
+    size_t texels, per_texel, parts;
+
+    Division(size_t along, size_t wanted)
+        : texels(along), per_texel((wanted + along - 1) / along), parts(per_texel > 1 ? along * per_texel : wanted) {}
+    /// Where a part begins and the one before it ends, in texels; between texels where none is divided.
+    double border(size_t part) const {
+        return per_texel > 1 ? double(part) / double(per_texel) : double(first_texel(part));
+    }
+    size_t first_texel(size_t part) const { return part * texels / parts; }
+    size_t end_texel(size_t part) const { return max_of(first_texel(part + 1), first_texel(part) + 1); }
+};
+
+}  // namespace
+
+IrradianceShare EnvironmentTable::share_above() const {
+    const Division columns(width_, kParts), rows(height_, kParts / 2);
+    std::vector<SkyPart> parts(columns.parts * rows.parts);
+    parallel_for(rows.parts, 1, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) {
+            const size_t y0 = rows.first_texel(row), y1 = rows.end_texel(row);
+            const double top = math::cos(std::numbers::pi * rows.border(row) / height_);
+            const double bottom = math::cos(std::numbers::pi * rows.border(row + 1) / height_);
+            // Of its texels' light: by height, as within a texel.
+            const double part_of_texels =
+                (top - bottom) / (cos_theta_[y0] - cos_theta_[y1]) / double(columns.per_texel);
+            const double height = 0.5 * (top + bottom), radius = std::sqrt(max_of(1 - height * height, 0.0));
+            for (size_t column = 0; column < columns.parts; ++column) {
+                const size_t x0 = columns.first_texel(column), x1 = columns.end_texel(column);
+                const double middle = 0.5 * (columns.border(column) + columns.border(column + 1)) / width_;
+                const math::SinCos phi = math::sin_cos(kTwoPi * (middle - 0.5));
+                SkyPart& part = parts[row * columns.parts + column];
+                part.direction = from_map({radius * phi.sin, height, -radius * phi.cos});
+                for (size_t y = y0; y < y1; ++y) {
+                    part.all += part_of_texels * complete_.run(width_, y, x0, x1);
+                    part.above += part_of_texels * compensated_.run(width_, y, x0, x1);
+                }
+            }
+        }
+    });
+    return IrradianceShare(parts);
+}
+
+EnvironmentDensity EnvironmentTable::at_surface(EnvironmentDensity wanted, Vec3 n, bool both_sides) const noexcept {
+    if (wanted == EnvironmentDensity::complete || compensated_.rows.empty()) return EnvironmentDensity::complete;
+    return above_.of(n, both_sides) < kLeastShare ? EnvironmentDensity::complete : EnvironmentDensity::compensated;
 }
 
 double EnvironmentTable::CellMasses::finish(size_t width) {
@@ -170,10 +226,8 @@ EnvironmentSample EnvironmentTable::sample(uint32_t choice, Vec2 u, EnvironmentD
     const double height = cos_theta_[y] + (cos_theta_[y + 1] - cos_theta_[y]) * fy;
     const math::SinCos phi = math::sin_cos(kTwoPi * ((x + fx) / width_ - 0.5));
     const double radius = std::sqrt(max_of((1 - height) * (1 + height), 0.0));
-    const double mx = radius * phi.sin, mz = -radius * phi.cos;
     EnvironmentSample out;
-    out.direction = normalize(static_cast<Vec3>(
-        Vec3d(cos_rotation_ * mx + sin_rotation_ * mz, height, cos_rotation_ * mz - sin_rotation_ * mx)));
+    out.direction = normalize(static_cast<Vec3>(from_map({radius * phi.sin, height, -radius * phi.cos})));
     out.pdf = cell_pdf(of, x, y);
     return out;
 }

@@ -84,7 +84,8 @@ DistantRadiance distant_radiance(const ShadingScene& scene, uint32_t source, Vec
         if (!table.is_constant()) {
             const MapPoint at = table.map_point(d);
             out.radiance = table.radiance_at(scene.scene, at);
-            if (from && !table.empty()) out.pdf = static_cast<float>(table.pdf_at(at, density));
+            if (from && !table.empty())
+                out.pdf = static_cast<float>(table.pdf_at(at, density_at(table, density, *from)));
             return out;
         }
         out.radiance = table.radiance(scene.scene, d);

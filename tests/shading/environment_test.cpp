@@ -43,6 +43,8 @@ std::vector<Rgb> filled(uint32_t width, uint32_t height, Rgb value) {
 }
 
 const SurfacePoint kUp = test::receiver({}, {0, 1, 0});
+/// To which the whole sky is seen, so that nothing is below a horizon.
+const SurfacePoint kInSpace = test::receiver({}, {});
 
 TEST(Environment, Orientation) {
     // One texel each, in the middle row of 8 × 5: the centre columns are 3 and 4.
@@ -148,7 +150,7 @@ struct Quarters {
     }
 };
 
-void samples_follow(EnvironmentDensity density) {
+void samples_follow(EnvironmentDensity density, const SurfacePoint& from) {
     const int n = test::by_tier(100000, 3000000);
     for (const Map& map : maps())
         for (const float rotation : {0.0f, 33.0f}) {
@@ -159,7 +161,7 @@ void samples_follow(EnvironmentDensity density) {
             double total = 0;
             for (size_t i = 0; i < quarters.count(); ++i) {
                 const double p =
-                    pdf_light(s.shading, 0, kUp, quarters.middle(i), nullptr, density) * quarters.solid_angle(i);
+                    pdf_light(s.shading, 0, from, quarters.middle(i), nullptr, density) * quarters.solid_angle(i);
                 total += p;
                 // Directions from which nothing comes are no samples.
                 expected[is_black(environment_radiance(s.shading, quarters.middle(i))) ? quarters.count() : i] += p * n;
@@ -170,12 +172,12 @@ void samples_follow(EnvironmentDensity density) {
             int mismatched = 0;
             for (int i = 0; i < n; ++i) {
                 const uint32_t choice = random.bits32();
-                const auto l = sample_light(s.shading, 0, kUp, choice, random.uniform2(), density);
+                const auto l = sample_light(s.shading, 0, from, choice, random.uniform2(), density);
                 const size_t cell = l ? quarters.of(l->wi) : quarters.count();
                 ++observed[expected[cell] > 0 ? cell : quarters.count()];
                 // A direction within rounding of a border between texels may be on the other side of it.
                 if (!l) continue;
-                const float pdf = pdf_light(s.shading, 0, kUp, l->wi, nullptr, density);
+                const float pdf = pdf_light(s.shading, 0, from, l->wi, nullptr, density);
                 mismatched += !(std::fabs(pdf / l->pdf - 1) < 1e-5f);
             }
             const test::ChiSquare result = test::chi_square(observed, expected);
@@ -184,8 +186,12 @@ void samples_follow(EnvironmentDensity density) {
         }
 }
 
-TEST(Environment, SamplesFollowTheDensity) { samples_follow(EnvironmentDensity::complete); }
-TEST(Environment, SamplesFollowTheCompensatedDensity) { samples_follow(EnvironmentDensity::compensated); }
+TEST(Environment, SamplesFollowTheDensity) { samples_follow(EnvironmentDensity::complete, kUp); }
+TEST(Environment, SamplesFollowTheCompensatedDensity) { samples_follow(EnvironmentDensity::compensated, kInSpace); }
+TEST(Environment, SamplesFollowWhatSuitsTheSurface) {
+    for (const Vec3 n : {Vec3{0, 1, 0}, Vec3{0.6f, -0.8f, 0}})
+        samples_follow(EnvironmentDensity::compensated, test::receiver({}, n));
+}
 
 /// What the complete density has above that of all directions alike; nothing is left out where nothing is above.
 TEST(Environment, CompensationKeepsWhatLiesAboveTheMean) {
@@ -194,8 +200,9 @@ TEST(Environment, CompensationKeepsWhatLiesAboveTheMean) {
     for (const Map& map : maps()) {
         const Sky s = sky(map.width, map.height, map.texels, 20);
         const auto densities = [&](Vec3 d) {
-            return std::pair<double, double>(pdf_light(s.shading, 0, kUp, d, nullptr),
-                                             pdf_light(s.shading, 0, kUp, d, nullptr, EnvironmentDensity::compensated));
+            return std::pair<double, double>(
+                pdf_light(s.shading, 0, kInSpace, d, nullptr),
+                pdf_light(s.shading, 0, kInSpace, d, nullptr, EnvironmentDensity::compensated));
         };
         double scale = 1;  // where it has most
         double most = 0;
@@ -212,6 +219,77 @@ TEST(Environment, CompensationKeepsWhatLiesAboveTheMean) {
         for (const auto& [complete, compensated] : all)
             EXPECT_NEAR(compensated, scale * max_of(complete - kUniform, 0.0), 1e-5 * scale * (complete + kUniform))
                 << map.name;
+    }
+}
+
+/// By quadrature over parts of texels, the part of a surface's irradiance that comes from above the mean decides
+/// which density there is. Normals where that changes within six degrees are not asked: a table answers.
+TEST(Environment, CompensatesWhereWhatLiesAboveTheMeanIsSeen) {
+    constexpr double kUniform = 1 / (4 * std::numbers::pi);
+    constexpr double kLeastShare = 0.25;
+    Random random(14);
+    for (const Map& map : maps()) {
+        SCOPED_TRACE(map.name);
+        const float rotation = 70;
+        const Sky s = sky(map.width, map.height, map.texels, rotation);
+        // Of more texels where there are few, which would be too wide to be one direction each.
+        const Map fine{map.name,
+                       map.width * ((64 + map.width - 1) / map.width),
+                       map.height * ((32 + map.height - 1) / map.height),
+                       {}};
+        const Quarters quarters{fine, rotation * std::numbers::pi / 180};
+        std::vector<double> density(quarters.count());
+        for (size_t i = 0; i < quarters.count(); ++i)
+            density[i] = pdf_light(s.shading, 0, kInSpace, quarters.middle(i), nullptr);
+        const auto pays = [&](Vec3 n, bool both_sides) {
+            double all = 0, above = 0;
+            for (size_t i = 0; i < quarters.count(); ++i) {
+                const double towards = dot(n, quarters.middle(i));
+                const double cosine = both_sides ? std::fabs(towards) : max_of(towards, 0.0);
+                all += cosine * density[i] * quarters.solid_angle(i);
+                above += cosine * max_of(density[i] - kUniform, 0.0) * quarters.solid_angle(i);
+            }
+            return !(above < kLeastShare * all);
+        };
+        // Where both densities differ most.
+        Vec3 probe;
+        double most = -1;
+        const auto pdf = [&](const SurfacePoint& from, Vec3 d, EnvironmentDensity wanted) {
+            return pdf_light(s.shading, 0, from, d, nullptr, wanted);
+        };
+        for (size_t i = 0; i < quarters.count(); ++i) {
+            const Vec3 d = quarters.middle(i);
+            const double difference = std::fabs(pdf(kInSpace, d, EnvironmentDensity::complete) -
+                                                pdf(kInSpace, d, EnvironmentDensity::compensated));
+            if (difference > most) most = difference, probe = d;
+        }
+        if (most == 0) continue;  // nothing is compensated
+        int seen[2] = {}, asked = 0;
+        constexpr int kNormals = 100;
+        for (int i = 0; i < kNormals; ++i) {
+            SurfacePoint from = test::receiver({}, static_cast<Vec3>(random.direction()));
+            from.both_sides = i % 4 == 3;
+            const bool expected = pays(from.ns, from.both_sides);
+            const Frame frame = Frame::from_z(from.ns);
+            bool sure = true;
+            for (int k = 0; k < 6; ++k) {
+                const double phi = std::numbers::pi * k / 3, theta = 6 * std::numbers::pi / 180;
+                const Vec3d local{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+                sure = sure && pays(normalize(frame.to_world(Vec3(local))), from.both_sides) == expected;
+            }
+            if (!sure) continue;
+            ++asked, ++seen[expected];
+            EXPECT_EQ(pdf(from, probe, EnvironmentDensity::compensated),
+                      pdf(kInSpace, probe, expected ? EnvironmentDensity::compensated : EnvironmentDensity::complete))
+                << "normal " << from.ns.x << ' ' << from.ns.y << ' ' << from.ns.z << " both sides " << from.both_sides;
+            EXPECT_EQ(pdf(from, probe, EnvironmentDensity::complete),
+                      pdf(kInSpace, probe, EnvironmentDensity::complete));
+        }
+        EXPECT_GT(asked, kNormals / 2);
+        if (map.name == std::string("a tiny sun")) {
+            EXPECT_GT(seen[0], 10);
+            EXPECT_GT(seen[1], 10);
+        }
     }
 }
 

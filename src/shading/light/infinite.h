@@ -9,6 +9,12 @@ namespace steradian {
 
 inline uint32_t samples_wanted(const EnvironmentLight& light) { return light.samples; }
 
+/// Of a sky with an image.
+inline EnvironmentDensity density_at(const EnvironmentTable& table, EnvironmentDensity wanted,
+                                     const SurfacePoint& from) {
+    return table.at_surface(wanted, from.ns, from.both_sides);
+}
+
 /// Of a constant sky: by the cosine about the shading normal, so that a diffuse surface under an open sky has no
 /// variance at all; where light from behind counts as well, half of the directions are there. Where there is no
 /// surface, all directions are alike.
@@ -33,7 +39,7 @@ inline std::optional<LightSample> sample_kind(const EnvironmentLight&, const Lig
         }
         out.pdf = constant_sky_pdf(from, out.wi);
     } else {
-        const EnvironmentSample at = table.sample(choice, u, context.density);
+        const EnvironmentSample at = table.sample(choice, u, density_at(table, context.density, from));
         out.wi = at.direction;
         out.pdf = static_cast<float>(at.pdf);
     }
@@ -47,7 +53,7 @@ inline double pdf_kind(const EnvironmentLight&, const LightContext& context, con
                        const SurfacePoint* hit) {
     const EnvironmentTable& table = *context.scene.environment;
     if (hit || table.empty()) return 0;
-    return table.is_constant() ? constant_sky_pdf(from, wi) : table.pdf(wi, context.density);
+    return table.is_constant() ? constant_sky_pdf(from, wi) : table.pdf(wi, density_at(table, context.density, from));
 }
 
 }  // namespace steradian
