@@ -119,7 +119,8 @@ void add_diff(CLI::App& app, Action& action) {
     c->footer(kFooter);
     c->add_option("A", options->a, "A picture")->required();
     c->add_option("B", options->b, "Another one, the reference")->required();
-    c->add_option("--output", options->output, "Write |A - B| as a picture: .exr, .hdr, .pfm or .png");
+    add_text(c, "--output", options->output, "without --output no picture is written",
+             "Write |A - B| as a picture: .exr, .hdr, .pfm or .png");
     const auto bound = [&](const char* name, std::optional<double>& value, double lowest, const char* help) {
         add_real(c, name, value, lowest, 1e300, help);
     };

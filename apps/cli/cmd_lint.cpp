@@ -99,8 +99,7 @@ void add_lint(CLI::App& app, Action& action) {
         ->default_str("10");
     c->add_flag("--list-rules", o->list, "Show the rules, and end");
     c->add_flag("--json", o->json, "As JSON");
-    c->add_option("--variant", o->settings.variant, "Which of the variants of a glTF file's materials, by name")
-        ->type_name("NAME");
+    add_variant_option(c, o->settings);
     c->add_flag("--allow-outside-paths", o->settings.allow_outside_paths,
                 "Let a glTF file name files outside its own folder");
     add_count<uint64_t>(c, "--gltf-memory", o->settings.gltf_memory, 0, 1 << 20,

@@ -436,8 +436,8 @@ void add_render(CLI::App& app, Action& action) {
         ->allow_extra_args(false)
         ->type_name("FILE")
         ->group("Output");
-    c->add_option("--aovs", o->settings.aovs,
-                  fmt::format("Channels beside colour, for EXR; 'all', 'none' or some of: {}", aov_list()))
+    add_text(c, "--aovs", o->settings.aovs, "without --aovs they are those of the scene; 'none' is without any",
+             fmt::format("Channels beside colour, for EXR; 'all', 'none' or some of: {}", aov_list()))
         ->type_name("NAME,...")
         ->group("Output");
     add_picture_options(c, o->picture, "Output");
@@ -446,11 +446,10 @@ void add_render(CLI::App& app, Action& action) {
     add_count<uint32_t>(c, "--threads", o->execution.threads, 0, kMaxThreads,
                         "0: all the machine has; never changes the picture")
         ->group("Execution");
-    c->add_option(
-         "--time-limit", o->time_limit,
-         "Render for so long (60s, 5m, 1.5h; preparing the scene not counted) instead of up to the scene's\n"
-         "number of samples. All pixels get the same number, at least 1 and at most --spp where that is given;\n"
-         "the file says how many, and --spp with that number makes the same picture")
+    add_text(c, "--time-limit", o->time_limit, "for example --time-limit 60s",
+             "Render for so long (60s, 5m, 1.5h; preparing the scene not counted) instead of up to the scene's\n"
+             "number of samples. All pixels get the same number, at least 1 and at most --spp where that is given;\n"
+             "the file says how many, and --spp with that number makes the same picture")
         ->type_name("TIME")
         ->group("Execution");
     add_count<uint32_t>(c, "--tile-size", o->execution.tile_size, 1, 256, "Pixels, 1 to 256; never changes the picture")

@@ -69,7 +69,16 @@ double parse_real(const std::string& option, const std::string& text, double low
 
 UnknownChoice::UnknownChoice(const std::string& option, const std::string& word,
                              std::span<const std::string_view> choices)
-    : CLI::ValidationError(option, "unknown value '" + word + "'"), hint(suggestion(word, choices)) {}
+    : WrongText(option, "unknown value '" + word + "'", suggestion(word, choices)) {}
+
+CLI::Option* add_text(CLI::App* c, const std::string& name, std::string& value, const std::string& hint,
+                      const std::string& help) {
+    const auto set = [&value, name, hint](const std::string& text) {
+        if (text.empty()) throw WrongText(name, "the text is empty", hint);
+        value = text;
+    };
+    return c->add_option_function<std::string>(name, set, help);
+}
 
 ImageWriteOptions PictureOptions::write() const {
     ImageWriteOptions out;

@@ -68,11 +68,22 @@ CLI::Option* add_real(CLI::App* c, const std::string& names, Value& value, doubl
     return c->add_option_function<std::string>(names, set, help)->type_name("FLOAT");
 }
 
-/// A word that is none of those an option knows; `hint` says which one may have been meant.
-struct UnknownChoice : CLI::ValidationError {
-    UnknownChoice(const std::string& option, const std::string& word, std::span<const std::string_view> choices);
+/// What an option cannot take, and what to do about it.
+struct WrongText : CLI::ValidationError {
+    WrongText(const std::string& option, const std::string& problem, std::string what_to_do)
+        : CLI::ValidationError(option, problem), hint(std::move(what_to_do)) {}
     std::string hint;
 };
+
+/// A word that is none of those an option knows; the hint says which one may have been meant.
+struct UnknownChoice : WrongText {
+    UnknownChoice(const std::string& option, const std::string& word, std::span<const std::string_view> choices);
+};
+
+/// An option with a text. An empty one, as scripts pass it by mistake, is an error: it would count as not given.
+/// `hint` says what could stand there.
+CLI::Option* add_text(CLI::App* c, const std::string& name, std::string& value, const std::string& hint,
+                      const std::string& help);
 
 /// An option with one of `choices`; the chosen one goes to `value`, a std::string or an optional one.
 template <class Value>

@@ -62,8 +62,8 @@ std::string option_hint(const CLI::App& command) {
 
 /// The arguments may hold foreign bytes, and CLI11 repeats them as they are.
 Error wrong_arguments(const CLI::App& app, const CLI::ParseError& e) {
-    if (const auto* choice = dynamic_cast<const UnknownChoice*>(&e))
-        return usage_error(escape_for_display(e.what(), 4096), choice->hint);
+    if (const auto* wrong = dynamic_cast<const WrongText*>(&e))
+        return usage_error(escape_for_display(e.what(), 4096), wrong->hint);
     const auto chosen = app.get_subcommands();
     if (!chosen.empty())
         if (std::string hint = option_hint(*chosen.front()); !hint.empty())

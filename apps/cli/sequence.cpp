@@ -87,10 +87,10 @@ std::string numbered(const std::string& path, uint32_t number) {
 }
 
 void add_sequence_options(CLI::App* c, SequenceOptions& options) {
-    c->add_option("--frames", options.frames,
-                  "Frames of an animation, the first and the last one included: 1:48 or 1-48. Frame k is the moment\n"
-                  "k / FPS. Each goes to a file of its own: #### in its name becomes the number (out.####.exr), and\n"
-                  "without that out.png becomes out_0001.png; each has the bits of --frame-time alone")
+    add_text(c, "--frames", options.frames, "for example --frames 1:48",
+             "Frames of an animation, the first and the last one included: 1:48 or 1-48. Frame k is the moment\n"
+             "k / FPS. Each goes to a file of its own: #### in its name becomes the number (out.####.exr), and\n"
+             "without that out.png becomes out_0001.png; each has the bits of --frame-time alone")
         ->type_name("FIRST:LAST")
         ->group("Sequence");
     add_real(c, "--fps", options.fps, 1e-3, 1e6, "Frames a second, for --frames")

@@ -32,6 +32,7 @@ std::optional<std::vector<uint32_t>> parse_numbers(std::string_view text, char s
 namespace {
 
 constexpr std::array<std::string_view, 2> kLightUnits{"radiometric", "photometric"};
+constexpr const char* kSizeHint = "for example --size 1920x1080";
 
 Result<Filter> parse_filter(const std::string& text) {
     const size_t colon = text.find(':');
@@ -91,9 +92,7 @@ std::optional<Rgb> parse_color(std::string_view text) {
 
 Status parse_size(const std::string& text, Overrides& said) {
     const auto size = parse_numbers(text, 'x', 2);
-    if (!size)
-        return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(text)),
-                           "for example --size 1920x1080");
+    if (!size) return usage_error(fmt::format("--size: '{}' is not WIDTHxHEIGHT", escape_for_display(text)), kSizeHint);
     said.width = (*size)[0], said.height = (*size)[1];
     return Ok{};
 }
@@ -300,6 +299,13 @@ std::string replay_command(const std::string& scene, const SettingsOptions& o, c
     return escape_for_display(out, 8192);
 }
 
+CLI::Option* add_variant_option(CLI::App* c, SettingsOptions& options) {
+    return add_text(c, "--variant", options.variant,
+                    "steradian info names the variants of a file; without --variant it has its own materials",
+                    "Which of the variants of a glTF file's materials, by name")
+        ->type_name("NAME");
+}
+
 void add_settings_options(CLI::App* c, SettingsOptions& options) {
     add_count<uint64_t>(c, "--spp", options.spp, 1, kMaxSamplesPerPixel,
                         "Samples per pixel; the noise falls with their square root")
@@ -309,17 +315,22 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
              "for example 0.05, and says in the file what was reached, or why that cannot be said (exit code 4);\n"
              "--spp is then the most samples of a pixel (default 65536). Needs 6 / target² pixels. 0: no target")
         ->group("Picture");
-    c->add_option("--size", options.size, "Pixels, for example 1920x1080")->type_name("WIDTHxHEIGHT")->group("Picture");
-    c->add_option("--crop", options.crop,
-                  "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
-                  "bits as in the whole picture (but with --target-error, which is for what is rendered);\n"
-                  "'all' undoes the scene's crop")
+    add_text(c, "--size", options.size, kSizeHint, "Pixels, for example 1920x1080")
+        ->type_name("WIDTHxHEIGHT")
+        ->group("Picture");
+    add_text(c, "--crop", options.crop, "pixels from the top left corner, X0,Y0,X1,Y1, or 'all'",
+             "Render only these pixels (X1, Y1 not included; from the top left corner), with the same\n"
+             "bits as in the whole picture (but with --target-error, which is for what is rendered);\n"
+             "'all' undoes the scene's crop")
         ->type_name("X0,Y0,X1,Y1")
         ->group("Picture");
-    c->add_option("--camera", options.camera, "Name or number of the camera")->type_name("NAME")->group("Picture");
-    c->add_option("--env", options.environment,
-                  "What shines from far away, in place of the scene's own and of the studio of a bare model: none, a\n"
-                  "radiance R,G,B, or a latitude-longitude picture (HDR, EXR, PFM, PNG, JPEG, WebP)")
+    add_text(c, "--camera", options.camera, "without --camera it is the one of the scene",
+             "Name or number of the camera")
+        ->type_name("NAME")
+        ->group("Picture");
+    add_text(c, "--env", options.environment, "without --env it is that of the scene; 'none' is without one",
+             "What shines from far away, in place of the scene's own and of the studio of a bare model: none, a\n"
+             "radiance R,G,B, or a latitude-longitude picture (HDR, EXR, PFM, PNG, JPEG, WebP)")
         ->type_name("WHAT")
         ->group("Picture");
     constexpr double kMaxTurn = 1e6, kMaxScale = 1e15;
@@ -331,12 +342,11 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
     c->add_flag("--allow-outside-paths", options.allow_outside_paths,
                 "Let a glTF file name files outside its own folder")
         ->group("Picture");
-    c->add_option("--variant", options.variant, "Which of the variants of a glTF file's materials, by name")
-        ->type_name("NAME")
-        ->group("Picture");
-    c->add_option("--animation", options.animation,
-                  "Which animation of a glTF file moves it, by name or by number from 0; alone: its pose at 0 s.\n"
-                  "Without this and --frame-time the scene stands as the file has it")
+    add_variant_option(c, options)->group("Picture");
+    add_text(c, "--animation", options.animation,
+             "steradian info names the animations of a file; without --animation it stands as the file has it",
+             "Which animation of a glTF file moves it, by name or by number from 0; alone: its pose at 0 s.\n"
+             "Without this and --frame-time the scene stands as the file has it")
         ->type_name("NAME")
         ->group("Picture");
     constexpr double kMaxTime = 1e9;
@@ -378,8 +388,8 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
     add_real(c, "--ao-distance", options.ao_distance, 0, kMaxAoDistance,
              "Metres up to which ao looks for what is in the way; 0: anywhere")
         ->group("Picture");
-    c->add_option("--filter", options.filter,
-                  "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
+    add_text(c, "--filter", options.filter, "for example --filter gaussian:1.5",
+             "box, tent, gaussian or mitchell, optionally with a radius in pixels: gaussian:1.5")
         ->type_name("NAME[:RADIUS]")
         ->group("Picture");
     add_choice(c, "--sampler", options.sampler, names_of<SamplerKind>(), "sobol (less noise) or independent")

@@ -27,6 +27,8 @@ struct SettingsOptions {
     std::string aovs;                  ///< an option of `render` alone
 };
 void add_settings_options(CLI::App* c, SettingsOptions& options);
+/// Of these, the one that lint has as well.
+CLI::Option* add_variant_option(CLI::App* c, SettingsOptions& options);
 
 /// The same, read. It wins over what the scene says.
 struct Overrides {

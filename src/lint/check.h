@@ -39,6 +39,7 @@ struct Check {
     Findings& out;
     std::span<const Element> consumed;  ///< used, although nothing in the scene says so
     uint32_t own_instances;             ///< those behind are the studio of a bare model
+    bool is_model = false;              ///< of a format that has no environment: options give it one
     World world;
     Bodies bodies;
 

@@ -33,7 +33,9 @@ public:
         }
         if (!any && needs_light(check_.settings))
             check_.out.add(Rule::no_light, std::nullopt, "nothing in the scene shines: the picture will be black",
-                           "add a light, for example {\"type\": \"environment\", \"radiance\": [1, 1, 1]}");
+                           check_.is_model
+                               ? "'--env 1,1,1' gives it a white sky, '--env sky.hdr' that of a picture"
+                               : "add a light, for example {\"type\": \"environment\", \"radiance\": [1, 1, 1]}");
     }
 
     void look_for_walls() {

@@ -75,9 +75,13 @@ Status disable(Findings& findings, const std::vector<std::string>& names) {
 
 /// Numbers of meshes that are not finite are findings, not faults: prepare leaves those triangles out.
 Status check_scene(const Scene& scene, const RenderSettings& settings, Findings& findings,
-                   std::span<const Element> consumed, size_t own_instances) {
+                   const LoadedScene* loaded = nullptr) {
     if (Status status = validate(scene, MeshNumbers::any); !status) return status;
-    Check check(scene, settings, findings, consumed, own_instances);
+    const bool studio = loaded && loaded->before_studio;
+    Check check(scene, settings, findings,
+                loaded ? std::span<const Element>(loaded->locations.consumed) : std::span<const Element>(),
+                studio ? loaded->before_studio->instances : scene.instances.size());
+    check.is_model = loaded && !loaded->locations.file.empty() && extension_of(loaded->locations.file) != ".json";
     check_usage(check);
     check_materials(check);
     check_textures(check);
@@ -148,8 +152,7 @@ uint64_t LintReport::count(Severity severity) const noexcept {
 Result<LintReport> lint(const Scene& scene, const RenderSettings& settings, const LintOptions& options) {
     using namespace lint_detail;
     return guarded(options, [&](Findings& findings) -> Result<LintReport> {
-        if (Status status = check_scene(scene, settings, findings, {}, scene.instances.size()); !status)
-            return std::move(status).error();
+        if (Status status = check_scene(scene, settings, findings); !status) return std::move(status).error();
         return findings.take();
     });
 }
@@ -158,9 +161,7 @@ Result<LintReport> lint(const LoadedScene& loaded, const LintOptions& options) {
     using namespace lint_detail;
     return guarded(options, [&](Findings& findings) -> Result<LintReport> {
         add_reader_warnings(loaded, findings);
-        const size_t own = loaded.before_studio ? loaded.before_studio->instances : loaded.scene.instances.size();
-        if (Status status = check_scene(loaded.scene, loaded.settings, findings, loaded.locations.consumed, own);
-            !status)
+        if (Status status = check_scene(loaded.scene, loaded.settings, findings, &loaded); !status)
             return std::move(status).error();
         LintReport out = findings.take();
         for (Finding& finding : out.findings) {

@@ -155,6 +155,26 @@ TEST_F(FilesAndArguments, NumbersAreDecimalAndWhole) {
         expect_usage({"render", "scene.json", wrong[0], wrong[1]}, wrong[0] + ": expected a whole number from ");
 }
 
+/// As "--variant $VARIANT" has it where the variable is not set: as if nothing had been said it would be another
+/// picture.
+TEST_F(FilesAndArguments, EmptyTextsAreNotTakenForOptionsThatAreNotGiven) {
+    for (const char* option : {"--size", "--crop", "--camera", "--env", "--variant", "--animation", "--filter",
+                               "--aovs", "--frames", "--time-limit"})
+        for (const std::vector<std::string>& words :
+             {std::vector<std::string>{option, ""}, std::vector<std::string>{option + std::string("=")}}) {
+            std::vector<std::string> arguments{"render", "missing.gltf"};
+            arguments.insert(arguments.end(), words.begin(), words.end());
+            const Outcome o = steradian(arguments);
+            EXPECT_EQ(o.code, 2) << option;
+            EXPECT_NE(o.err.find(option), std::string::npos) << o.err;
+        }
+    expect_usage({"lint", "missing.gltf", "--variant", ""},
+                 "error: --variant: the text is empty\n  hint: steradian info names the variants of a file");
+    expect_usage({"replay", "missing.gltf", "--pixel", "0,0", "--sample", "0", "--env", ""},
+                 "error: --env: the text is empty\n  hint: without --env it is that of the scene");
+    expect_usage({"diff", "a.exr", "b.exr", "--output", ""}, "--output: the text is empty");
+}
+
 TEST_F(FilesAndArguments, ExposureIsFinite) {
     render_to("a.exr");
     for (const char* wrong : {"nan", "inf", "-inf", "1e400", "101", "bright"}) {

@@ -150,6 +150,15 @@ TEST(JsonDocument, DepthIsLimitedWithoutRecursion) {
     std::string objects;
     for (int i = 0; i < 1000; ++i) objects += "{\"a\":";
     expect_refused(objects, {1, 256 * 5 + 1}, "deeper than the limit of 256");
+    const auto pointer_of = [](std::string_view text, uint32_t depth) {
+        const auto document = parse(text, depth);
+        return document.ok() ? "(good)" : document.error().where.pointer;
+    };
+    EXPECT_EQ(pointer_of("[1, [], {\"x\": {\"deep\": [1]}, \"a/b~\": [[2], {\"y\": 1}, [[3]]]}]", 4), "/2/a~1b~0/2/0");
+    EXPECT_EQ(pointer_of("[]", 0), "");
+    EXPECT_EQ(pointer_of(objects, 3), "/a/a/a");
+    // As much of it as somebody may want to read.
+    EXPECT_EQ(pointer_of("[{\"a\": {\"" + std::string(1000, 'k') + "\": []}}]", 3), "/0/a");
     // Even a million levels are read, walked and destroyed where somebody allows them.
     const std::string million = nested(1'000'000, '[', ']');
     const auto deep = parse(million, 2'000'000);

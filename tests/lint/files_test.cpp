@@ -168,6 +168,26 @@ TEST_F(LintFiles, ElementsWithoutAPlaceOfTheirOwnHaveTheFile) {
               (Lines{"a.json: warning no-light"}));
 }
 
+/// Options light a model, whose format has no environment.
+TEST_F(LintFiles, WhatToDoAboutTheDarkDependsOnTheFormat) {
+    spit(folder_.file("m.gltf"), "{\"asset\": {\"version\": \"2.0\"}}");
+    spit(folder_.file("s.json"), R"({"version": 1, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]}})");
+    const auto hint_for = [&](const std::string& name) -> std::string {
+        LoadOptions options;
+        options.locations = true;
+        options.environment.replace = EnvironmentOptions::None{};
+        const auto loaded = load_scene(folder_.file(name), options);
+        if (!loaded) return loaded.error().str();
+        const auto report = steradian::lint(*loaded);
+        if (!report) return report.error().str();
+        for (const Finding& f : report->findings)
+            if (f.rule == "no-light") return f.hint;
+        return "no finding";
+    };
+    EXPECT_TRUE(hint_for("m.gltf").starts_with("'--env 1,1,1'")) << hint_for("m.gltf");
+    EXPECT_TRUE(hint_for("s.json").starts_with("add a light")) << hint_for("s.json");
+}
+
 TEST_F(LintFiles, TheVocabularyOfTheCourse) {
     EXPECT_EQ(lines("a.json", R"({
   "integrator": {"type": "path", "point_light_flux": [1, 1, 1]},

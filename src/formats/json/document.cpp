@@ -81,6 +81,12 @@ std::string syntax_hint(rapidjson::ParseErrorCode code, std::string_view rest) {
     return {};
 }
 
+/// RFC 6901, section 3.
+void append_token(std::string& pointer, std::string_view token) {
+    pointer += '/';
+    for (const char c : token) c == '~' ? pointer += "~0" : c == '/' ? pointer += "~1" : pointer += c;
+}
+
 Error whole_text_error(const std::string& name, ErrorCode code, std::string message, std::string hint) {
     Error error;
     error.code = code;
@@ -116,6 +122,7 @@ public:
         size_t offset;
         std::string message;
         ErrorCode code;
+        std::string pointer = {};
     };
     const std::optional<Failure>& failure() const { return failure_; }
 
@@ -155,9 +162,12 @@ private:
     }
     bool open(Kind kind) {
         const size_t offset = stream_.Tell();
-        if (open_.size() >= max_depth_)
-            return fail(offset, "nested deeper than the limit of " + std::to_string(max_depth_) + " levels",
-                        ErrorCode::resources);
+        if (open_.size() >= max_depth_) {
+            fail(offset, "nested deeper than the limit of " + std::to_string(max_depth_) + " levels",
+                 ErrorCode::resources);
+            failure_->pointer = pointer_of_next();
+            return false;
+        }
         open_.push_back(static_cast<uint32_t>(document_.nodes_.size()));
         return add(kind, offset, 0);
     }
@@ -165,6 +175,29 @@ private:
         document_.nodes_[open_.back()].payload = size << 32 | document_.nodes_.size();
         open_.pop_back();
         return true;
+    }
+    /// Of the value that comes next; of one around it where that would be longer than anybody reads.
+    std::string pointer_of_next() const {
+        constexpr size_t kLongest = 1000;
+        std::string out;
+        for (size_t level = 0; level < open_.size(); ++level) {
+            const uint32_t node = open_[level];
+            const auto child =
+                level + 1 < open_.size() ? open_[level + 1] : static_cast<uint32_t>(document_.nodes_.size());
+            const size_t bytes = out.size();
+            append_token(out, document_.nodes_[node].kind == Kind::object ? Value(document_, child - 1).string()
+                                                                          : std::to_string(number_of(node, child)));
+            if (out.size() <= kLongest) continue;
+            out.resize(bytes);
+            break;
+        }
+        return out;
+    }
+    /// Of an element of an array that is still open.
+    size_t number_of(uint32_t array, uint32_t element) const {
+        size_t out = 0;
+        for (uint32_t i = array + 1; i < element; ++out) i = Value(document_, i).next_sibling();
+        return out;
     }
     /// Of the string that ends right before the stream's position. A quote inside a string has an odd number of
     /// backslashes before it, the opening one has none.
@@ -199,7 +232,7 @@ Result<Document> Document::parse(std::string_view text, const std::string& name,
         if (begin) *begin += kByteOrderMark.size();
     }
     const auto placed = [&](Error error, size_t offset) {
-        if (begin) error.where = {name, 0, 0, *begin + offset, {}};
+        if (begin) error.where = {name, 0, 0, *begin + offset, std::move(error.where.pointer)};
         return error;
     };
     const auto fail = [&](size_t offset, std::string message, std::string hint = {},
@@ -229,23 +262,17 @@ Result<Document> Document::parse(std::string_view text, const std::string& name,
     constexpr unsigned kFlags =
         rapidjson::kParseIterativeFlag | rapidjson::kParseValidateEncodingFlag | rapidjson::kParseNumbersAsStringsFlag;
     const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
-    if (const auto& failure = builder.failure()) return fail(failure->offset, failure->message, {}, failure->code);
+    if (const auto& failure = builder.failure()) {
+        Error error = error_at(text, name, failure->offset, failure->message, {}, failure->code);
+        error.where.pointer = failure->pointer;
+        return placed(std::move(error), failure->offset);
+    }
     if (result.IsError()) {
         const size_t at = std::min(result.Offset(), text.size());
         return fail(at, syntax_message(result.Code()), syntax_hint(result.Code(), text.substr(at)));
     }
     return document;
 }
-
-namespace {
-
-/// RFC 6901, section 3.
-void append_token(std::string& pointer, std::string_view token) {
-    pointer += '/';
-    for (const char c : token) c == '~' ? pointer += "~0" : c == '/' ? pointer += "~1" : pointer += c;
-}
-
-}  // namespace
 
 std::string Document::pointer(size_t offset) const {
     std::string out;

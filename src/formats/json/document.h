@@ -47,6 +47,7 @@ public:
 
 private:
     friend class Document;
+    friend class TreeBuilder;
     Value(const Document& document, uint32_t node) : document_(&document), node_(node) {}
     uint32_t next_sibling() const noexcept;
 
@@ -109,7 +110,8 @@ inline constexpr uint64_t kMaxTextBytes = uint64_t(1) << 30;
 class Document {
 public:
     /// Refuses, with a place: anything that is not JSON in UTF-8 (a byte order mark is skipped), NUL bytes, numbers
-    /// beyond double's range, nesting deeper than max_depth, text over kMaxTextBytes. `text` must outlive the document;
+    /// beyond double's range, nesting deeper than max_depth (with the JSON pointer of what is too deep, or where
+    /// that is long of something around it), text over kMaxTextBytes. `text` must outlive the document;
     /// `name` stands for the file in errors. `begin`: where in the file the text lies, if that is a binary one: places
     /// are then bytes of it.
     static Result<Document> parse(std::string_view text, const std::string& name, uint32_t max_depth,
