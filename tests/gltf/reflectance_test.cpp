@@ -19,6 +19,7 @@ std::string specular_color(const std::string& color) { return specular("\"specul
 std::string coat(const std::string& factor) {
     return "\"KHR_materials_clearcoat\": {\"clearcoatFactor\": " + factor + "}";
 }
+std::string transmission(const std::string& members) { return ", \"KHR_materials_transmission\": {" + members + "}"; }
 double normal_reflectance(double n) { return (n - 1) * (n - 1) / ((n + 1) * (n + 1)); }
 /// Of a coat of index 1.5 over what reflects `base`.
 Rgb coated(double weight, Rgb base) {
@@ -94,6 +95,8 @@ TEST(GltfReflectance, TheLimitOfMixesIsReported) {
     EXPECT_TRUE(
         has(load(R"(, "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatTexture": {"index": 0}})").fidelity,
             "the texture 'clearcoatTexture' has no effect"));
+    const LoadedScene coated_glass = load(", " + coat("1") + transmission("\"transmissionFactor\": 0.5"));
+    EXPECT_TRUE(has(coated_glass.fidelity, "below a clearcoat a base that transmits a part of the light has no"));
 }
 
 TEST(GltfReflectance, ACoatLeavesTheBaseItsIndex) {
@@ -119,12 +122,39 @@ TEST(GltfReflectance, ACoatLeavesTheBaseItsIndex) {
     expect_color(under_a_white_sky(halves, kWidth / 2, kWidth), coated(1, grey(0.04)));
 }
 
-/// Bodies that light passes through keep the index that refracts it.
-TEST(GltfReflectance, ACoatOnGlassChangesNoIndex) {
-    const LoadedScene loaded =
-        wall(black(coat("1") + ", " + ior("1.7") + R"(, "KHR_materials_transmission": {"transmissionFactor": 0.5})"));
-    const Scene& s = loaded.scene;
-    EXPECT_EQ(std::get<OpenPbrMaterial>(s.materials[index(s.instances.at(0).material)]).specular_ior, 1.7f);
+/// Bodies that light passes through keep the index that refracts it; the opaque part of the surface has its highlight.
+TEST(GltfReflectance, ACoatOnWhatTransmitsInPart) {
+    const std::string half = "\"transmissionFactor\": 0.5";
+    const Scene s = wall(black(coat("1") + ", " + ior("1.7") + transmission(half))).scene;
+    const auto& mix = std::get<MixMaterial>(s.materials[index(s.instances.at(0).material)]);
+    const auto part = [&](MaterialId id) { return std::get<OpenPbrMaterial>(s.materials[index(id)]); };
+    EXPECT_EQ(part(mix.first).specular_ior, 1.7f * 1.5f);
+    EXPECT_EQ(part(mix.first).transmission_weight.value, 0);
+    EXPECT_EQ(part(mix.second).specular_ior, 1.7f);
+    EXPECT_EQ(part(mix.second).transmission_weight.value, 1);
+    EXPECT_EQ(mix.weight.value, 0.5f);
+    // Black glass, a thin sheet, reflects with its first surface alone.
+    for (const char* factor : {"0.25", "0.5", "1"})
+        expect_wall(black(coat("1") + transmission("\"transmissionFactor\": " + std::string(factor))),
+                    coated(1, grey(0.04)));
+    expect_wall(black(coat("0.5") + transmission(half)), coated(0.5, grey(0.04)));
+    expect_wall(black(coat("1") + transmission(half), "\"metallicFactor\": 0.5"), coated(1, grey(0.02)));
+    // By a texture: on the right it transmits.
+    const Scene halves =
+        wall(black(coat("1") + transmission(R"("transmissionFactor": 1, "transmissionTexture": {"index": 0})"))).scene;
+    for (const uint32_t x : {0u, kWidth / 2})
+        expect_color(under_a_white_sky(halves, x, x + kWidth / 2), coated(1, grey(0.04)));
+}
+
+TEST(GltfReflectance, WhatIsNotSplitBelowACoat) {
+    const auto materials = [](const std::string& extensions, const std::string& metal = "\"metallicFactor\": 0") {
+        return wall(black(extensions, metal)).scene.materials.size();
+    };
+    EXPECT_EQ(materials(coat("1") + transmission("\"transmissionFactor\": 1")), 1u);
+    EXPECT_EQ(materials(coat("1") + transmission("\"transmissionFactor\": 0")), 1u);
+    EXPECT_EQ(materials(coat("0") + transmission("\"transmissionFactor\": 0.5")), 1u);
+    EXPECT_EQ(materials(coat("1") + transmission("\"transmissionFactor\": 0.5"), "\"metallicFactor\": 1"), 1u);
+    EXPECT_EQ(materials(coat("1") + transmission("\"transmissionFactor\": 0.5")), 3u);
 }
 
 /// Airy's sum over the spectrum, in air whatever lies above.

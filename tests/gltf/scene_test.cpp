@@ -307,7 +307,10 @@ TEST(GltfMaterial, IridescenceIsAThinFilm) {
     const auto clamped = material_of<OpenPbrMaterial>(beyond);
     EXPECT_EQ(clamped.thin_film_ior, 1);
     EXPECT_EQ(clamped.thin_film_thickness.maximum, 10);
-    for (const char* said : {"10 micrometres", "index of a film"}) EXPECT_TRUE(has(beyond.fidelity, said)) << said;
+    EXPECT_TRUE(has(beyond.fidelity, "10 micrometres"));
+    EXPECT_TRUE(has(beyond.diagnostics, "'iridescenceIor' must be at least 1"));
+    EXPECT_TRUE(
+        has(with("\"iridescenceFactor\": 1, \"iridescenceIor\": 3.5").fidelity, "an index of a film of more than 3"));
 }
 
 /// 20 over the Abbe number; of bodies only.

@@ -1,5 +1,7 @@
 #include "formats/gltf/gltf.h"
 
+#include <algorithm>
+
 #include "formats/gltf/animation.h"
 #include "formats/gltf/container.h"
 #include "formats/gltf/nodes.h"
@@ -12,6 +14,17 @@ template <class T>
 T value_or_throw(Result<T> result) {
     if (!result) throw json::ReadFailure{std::move(result).error()};
     return std::move(result).value();
+}
+
+/// Whatever is there blocks the rays towards lights without an extent, which no other rays find.
+void report_shadows_of_glass(Context& context, const Materials& materials) {
+    const auto offset = materials.first_transmitting();
+    const std::vector<Light>& lights = context.loaded.scene.lights;
+    const auto has_no_extent = [](const Light& light) { return !std::holds_alternative<AreaLight>(light); };
+    if (offset && std::any_of(lights.begin(), lights.end(), has_no_extent))
+        context.not_honoured(
+            "the lights of KHR_lights_punctual do not shine through what transmits light: behind it there is shadow",
+            *offset);
 }
 
 }  // namespace
@@ -45,6 +58,7 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     Materials materials(context, images);
     Meshes meshes(context, accessors, materials);
     place_nodes(context, accessors, meshes, read_pose(context, accessors), root);
+    report_shadows_of_glass(context, materials);
     images.decode();
     if (options.locations) {
         find_unused(context);

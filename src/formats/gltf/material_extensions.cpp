@@ -36,6 +36,7 @@ void reflect(OpenPbrMaterial& s, double reflectance) {
 /// Of the coat, seen from the base.
 double coat_index(const OpenPbrMaterial& s) { return 1 + (static_cast<double>(s.coat_ior) - 1) * s.coat_weight; }
 
+bool is_whole(const FloatInput& weight) { return weight.value == 1 && !weight.texture; }
 bool is_grey(Rgb c) { return c.r == c.g && c.g == c.b; }
 
 }  // namespace
@@ -49,6 +50,8 @@ void Materials::read_transmission(const Object& material, Reading& r) {
     s.transmission_weight.value = unit(*transmission, "transmissionFactor", 0);
     s.transmission_weight.texture = texture(*transmission, "transmissionTexture", Plane::red, r);
     s.transmission_color = s.base_color;
+    if (s.transmission_weight.value > 0 && !is_whole(s.base_metalness) && !first_transmitting_)
+        first_transmitting_ = transmission->offset();
     const auto volume = material.extension("KHR_materials_volume");
     const double thickness = volume ? volume->number_or("thicknessFactor", 0, kNotNegative) : 0;
     r.solid = thickness > 0;
@@ -76,9 +79,11 @@ double Materials::read_ior(const Object& material) {
     const auto extension = material.extension("KHR_materials_ior");
     const double ior = extension ? extension->number_or("ior", 1.5, kNotNegative) : 1.5;
     if (ior == 0) return 0;
-    if (ior > kLargest || ior < 1)
-        context_.not_honoured("an index of refraction beyond 1 to 9.7 is taken as the nearer one",
-                              extension->offset_of("ior"));
+    if (ior > kLargest)
+        context_.not_honoured("an index of refraction of more than 9.7 is taken as 9.7", extension->offset_of("ior"));
+    if (ior < 1)
+        context_.warn("'ior' of a material must be 0, or at least 1 as which it is taken", extension->offset_of("ior"),
+                      "out-of-range");
     return clamp_to(ior, 1.0, kLargest);
 }
 
@@ -89,7 +94,7 @@ void Materials::read_specular(const Object& material, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     const double ior = read_ior(material), normal = ior == 0 ? 1 : reflectance_of(ior);
     const auto specular = material.extension("KHR_materials_specular");
-    const bool all_metal = s.base_metalness.value == 1 && !s.base_metalness.texture;
+    const bool all_metal = is_whole(s.base_metalness);
     Rgb color{1, 1, 1};
     std::optional<TextureId> map;
     if (specular) {
@@ -138,6 +143,23 @@ OpenPbrMaterial Materials::below_coat(OpenPbrMaterial s) {
     return s;
 }
 
+/// Where a base below a coat transmits a part of the light, what transmits and what does not have different indices
+/// there: they become a mix.
+void Materials::split_below_coat(const Object& clearcoat, Reading& r) {
+    OpenPbrMaterial& s = r.surface;
+    const FloatInput passed = s.transmission_weight;
+    if (s.coat_weight == 0 || passed.value == 0 || is_whole(passed) || is_whole(s.base_metalness)) return;
+    if (!r.takes_another_layer()) {
+        context_.not_honoured(
+            "below a clearcoat a base that transmits a part of the light has no highlight of its own, where textures "
+            "weigh other layers",
+            clearcoat.offset());
+        return;
+    }
+    s.transmission_weight = {1};
+    r.layers.push_back({passed, [](OpenPbrMaterial& without) { without.transmission_weight = {0}; }});
+}
+
 void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
     OpenPbrMaterial& s = r.surface;
     s.coat_weight = unit(clearcoat, "clearcoatFactor", 0);
@@ -149,14 +171,19 @@ void Materials::read_clearcoat(const Object& clearcoat, Reading& r) {
     read_weight(clearcoat, "clearcoatTexture", Plane::red, r,
                 [](OpenPbrMaterial& without) { without.coat_weight = 0; });
     s.geometry_coat_normal = read_normal_map(clearcoat, "clearcoatNormalTexture", r);
+    if (!is_black(r.emission))
+        context_.not_honoured("a clearcoat does not darken what the surface below it emits", clearcoat.offset());
 }
 
-/// As fuzz, of the same distribution of fibres: the extension squares its roughness, OpenPBR does not. What a base
-/// below gets, and the masking, are near, not the same.
+/// As fuzz, of the same distribution of fibres: the extension squares its roughness, OpenPBR does not.
 void Materials::read_sheen(const Object& sheen, Reading& r) {
     const Rgb color = this->color(sheen, "sheenColorFactor", {0, 0, 0});
     const float most = max_component(color);
     if (most == 0) return;
+    context_.not_honoured(
+        "sheen is approximated: how its fibres hide each other, and how much of the light the base gets, is that of "
+        "OpenPBR's fuzz",
+        sheen.offset());
     OpenPbrMaterial& s = r.surface;
     s.fuzz_weight.value = most;
     s.fuzz_color = {color * (1 / most), texture(sheen, "sheenColorTexture", Plane::color, r)};
@@ -199,14 +226,17 @@ void Materials::read_iridescence(const Object& iridescence, Reading& r) {
     s.thin_film_thickness.maximum = thickness("iridescenceThicknessMaximum", 400);
     s.thin_film_thickness.texture = texture(iridescence, "iridescenceThicknessTexture", Plane::green, r);
     if (s.thin_film_thickness.texture) s.thin_film_thickness.minimum = thickness("iridescenceThicknessMinimum", 100);
-    const double largest = s.transmission_weight.value > 0 ? kLargestFilmIor : kLargestFilmIor / coat_index(s);
+    // Of what the coat lies on, only the part that is opaque has other indices below it.
+    const double largest = kLargestFilmIor / (is_whole(s.transmission_weight) ? 1 : coat_index(s));
     const double ior = iridescence.number_or("iridescenceIor", 1.3, kNotNegative);
-    if (ior < 1 || ior > largest)
-        context_.not_honoured(
-            largest < kLargestFilmIor
-                ? "an index of a film below a clearcoat of more than 3 over the coat's, or of less than 1, is clamped"
-                : "an index of a film beyond 1 to 3 is taken as the nearer one",
-            iridescence.offset_of("iridescenceIor"));
+    if (ior > largest)
+        context_.not_honoured(largest < kLargestFilmIor
+                                  ? "an index of a film below a clearcoat of more than 3 over the coat's is clamped"
+                                  : "an index of a film of more than 3 is taken as 3",
+                              iridescence.offset_of("iridescenceIor"));
+    if (ior < 1)
+        context_.warn("'iridescenceIor' must be at least 1, as which it is taken",
+                      iridescence.offset_of("iridescenceIor"), "out-of-range");
     s.thin_film_ior = static_cast<float>(clamp_to(ior, 1.0, largest));
 }
 
@@ -239,7 +269,7 @@ void Materials::read_weight(const Object& extension, std::string_view key, Plane
     const auto weight = texture(extension, key, plane, r);
     if (!weight) return;
     if (r.takes_another_layer())
-        r.layers.push_back({*weight, remove});
+        r.layers.push_back({{1, weight}, remove});
     else
         no_texture(extension, key);
 }
@@ -259,11 +289,13 @@ void Materials::read_extensions(const Object& material, Reading& r) {
         if (const auto dispersion = material.extension("KHR_materials_dispersion")) read_dispersion(*dispersion, r);
         read_diffuse_transmission(material, r);
     }
-    if (const auto coat = material.extension("KHR_materials_clearcoat")) read_clearcoat(*coat, r);
+    const auto coat = material.extension("KHR_materials_clearcoat");
+    if (coat) read_clearcoat(*coat, r);
     if (const auto sheen = material.extension("KHR_materials_sheen")) read_sheen(*sheen, r);
     if (const auto anisotropy = material.extension("KHR_materials_anisotropy")) read_anisotropy(*anisotropy, r);
     if (const auto iridescence = material.extension("KHR_materials_iridescence")) read_iridescence(*iridescence, r);
     if (!r.solid && r.surface.transmission_weight.value > 0) r.surface.geometry_thin_walled = true;
+    if (coat) split_below_coat(*coat, r);
 }
 
 }  // namespace steradian::gltf

@@ -196,7 +196,7 @@ MaterialId Materials::make(const Reading& r, const std::string& name) {
     Reading without = with;
     r.layers.back().remove(without.surface);
     const MaterialId first = make(without, name), second = make(with, name);
-    return context_.assets.add_material(MixMaterial{first, second, {1, r.layers.back().weight}}, name);
+    return context_.assets.add_material(MixMaterial{first, second, r.layers.back().weight}, name);
 }
 
 /// Section 3.9.3. The map turns the normals; `scale` multiplies what is along the surface.

@@ -29,6 +29,8 @@ public:
 
     /// Of a primitive; nothing: the default material of the specification.
     const Look& look(std::optional<uint32_t> number, VertexColors colors);
+    /// Where the first of the materials that are in use says that light passes through it.
+    std::optional<size_t> first_transmitting() const { return first_transmitting_; }
 
 private:
     using Remove = void (*)(OpenPbrMaterial&);
@@ -55,9 +57,9 @@ private:
         /// How many materials that are no mixes it becomes, without its layers.
         size_t parts() const { return !metal ? 1u : metal->reflects ? 3u : 2u; }
         bool solid = true;  ///< what transmits encloses a volume; false: it is a thin sheet
-        /// Layers that are there as far as a texture says.
+        /// What is there to a part that OpenPBR has no place for, mostly layers as far as a texture says.
         struct Layer {
-            TextureId weight;
+            FloatInput weight;
             Remove remove;
         };
         std::vector<Layer> layers;
@@ -98,6 +100,7 @@ private:
     double read_ior(const Object& material);
     void read_specular(const Object& material, Reading& r);
     static OpenPbrMaterial below_coat(OpenPbrMaterial s);
+    void split_below_coat(const Object& clearcoat, Reading& r);
     void read_diffuse_transmission(const Object& material, Reading& r);
     void read_clearcoat(const Object& clearcoat, Reading& r);
     void read_sheen(const Object& sheen, Reading& r);
@@ -107,6 +110,7 @@ private:
 
     Context& context_;
     Images& images_;
+    std::optional<size_t> first_transmitting_;
     std::map<std::pair<std::optional<uint32_t>, VertexColors>, Look> looks_;
     std::array<std::optional<TextureId>, 2> vertex_colors_;
 };
