@@ -91,7 +91,8 @@ std::string camera_name(const Scene& scene, size_t i) {
 
 /// What is unused, out of range, approximated or ignored: what can be said without a look at the geometry.
 Result<LintReport> quick_findings(const LoadedScene& loaded) {
-    static constexpr std::string_view kQuick[] = {"not-honoured", "input", "unused", "out-of-range", "nan-vertices"};
+    static constexpr std::string_view kQuick[] = {"not-honoured", "input",        "unused",
+                                                  "no-effect",    "out-of-range", "nan-vertices"};
     LintOptions options;
     for (const LintRule& rule : lint_rules())
         if (std::find(std::begin(kQuick), std::end(kQuick), rule.name) == std::end(kQuick))

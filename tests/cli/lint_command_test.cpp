@@ -107,6 +107,34 @@ TEST_F(LintCommand, RulesAreListed) {
     EXPECT_NE(o.out.find("\nunused                note     "), std::string::npos) << o.out;
 }
 
+/// Once each, by the command that it belongs to: a render says what the picture lacks.
+TEST_F(LintCommand, ModelsAreToldWhatOfThemHasNoEffect) {
+    spit(folder_.file("m.gltf"), R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+"accessors": [{"componentType": 5126, "type": "VEC3", "count": 3, "bufferView": 0}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "extensionsUsed": ["X_any"],
+"buffers": [{"byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"materials": [{"occlusionTexture": {"index": 0}, "toon": 1, "doubelSided": true,
+"extensions": {"KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1]}}}]})");
+    const std::string occlusion = "m.gltf:6:36 (/materials/0/occlusionTexture): note: 'occlusionTexture' has no effect",
+                      toon = "m.gltf:6:50 (/materials/0/toon): note: 'toon' is no property of a material",
+                      named = "m.gltf:4:70 (/extensionsUsed/0): note: the extension 'X_any'",
+                      misspelt = "m.gltf:6:61 (/materials/0/doubelSided): warning: 'doubelSided' is no property of",
+                      sheen = "(/materials/0/extensions/KHR_materials_sheen)";
+    const auto times = [](const std::string& text, const std::string& part) {
+        int n = 0;
+        for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+        return n;
+    };
+    for (const char* command : {"lint", "info"}) {
+        const std::string out = steradian({command, "m.gltf"}).out;
+        for (const std::string& line : {occlusion, toon, named, misspelt, sheen}) EXPECT_EQ(times(out, line), 1) << out;
+    }
+    const std::string err = steradian({"render", "m.gltf", "--size", "8x8", "--spp", "1", "-o", "m.png"}).err;
+    for (const std::string& line : {misspelt, sheen}) EXPECT_EQ(times(err, line), 1) << err;
+    for (const char* line : {"occlusionTexture", "toon", "X_any"}) EXPECT_EQ(times(err, line), 0) << err;
+}
+
 TEST_F(LintCommand, InfoNamesWhatIsUnused) {
     const Outcome text = steradian({"info", "bad.json"}), json = steradian({"info", "bad.json", "--json"});
     EXPECT_EQ(text.code, 0) << text.err;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "base/text.h"
 #include "math/vector.h"
@@ -130,13 +131,19 @@ void check_extensions(Context& context, const Object& root) {
                                 "the file requires the extension " + quoted(name) + ", which is not supported",
                                 remedy(name));
     }
-    for (const Value value : root.array("extensionsUsed"))
-        json::read_string(context.source, value, "an element of 'extensionsUsed'");
+    std::set<std::string_view> in_use;
     each_extension(root.value(), [&](const json::Member& member) {
-        if (!is_known(member.key))
-            context.not_honoured("the extension " + quoted(member.key) + " is not supported and has no effect",
-                                 member.key_offset);
+        if (is_known(member.key)) return;
+        context.not_honoured("the extension " + quoted(member.key) + " is not supported and has no effect",
+                             member.key_offset);
+        if (context.options.locations) in_use.insert(member.key);
     });
+    for (const Value value : root.array("extensionsUsed")) {
+        const std::string_view name = json::read_string(context.source, value, "an element of 'extensionsUsed'");
+        if (context.options.locations && !is_known(name) && !in_use.contains(name))
+            context.unused("the extension " + quoted(name) + " of 'extensionsUsed' is not known, and nothing uses it",
+                           value.offset());
+    }
 }
 
 std::vector<std::string> variant_names(const Context& context) {

@@ -79,8 +79,10 @@ public:
     void not_honoured(std::string message, size_t offset) {
         say(loaded.fidelity, reported_, std::move(message), offset);
     }
-    /// Nothing refers to it.
-    void unused(std::string message, size_t offset) { say(loaded.unused, unused_, std::move(message), offset); }
+    /// Nothing refers to it, or it has no effect on purpose: `rule` is the one of lint that says so.
+    void unused(std::string message, size_t offset, std::string rule = {}) {
+        say(loaded.unused, unused_, std::move(message), offset, std::move(rule));
+    }
 
 private:
     /// A hostile file can make any number of different messages: so many are kept.

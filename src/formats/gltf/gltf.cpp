@@ -5,6 +5,7 @@
 #include "formats/gltf/animation.h"
 #include "formats/gltf/container.h"
 #include "formats/gltf/nodes.h"
+#include "formats/gltf/unknown.h"
 #include "formats/gltf/unused.h"
 
 namespace steradian::gltf {
@@ -60,8 +61,10 @@ LoadedScene load(std::string_view bytes, const std::string& name, const std::str
     place_nodes(context, accessors, meshes, read_pose(context, accessors), root);
     report_shadows_of_glass(context, materials);
     images.decode();
+    find_unknown_properties(context, root);
     if (options.locations) {
         find_unused(context);
+        find_ineffective(context);
         // What the reader has made for nothing, such as the alpha of a material that is opaque, is not the file's.
         const Scene& scene = loaded.scene;
         const auto consume = [&](ElementKind kind, size_t count) {

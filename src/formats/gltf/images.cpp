@@ -57,11 +57,15 @@ uint32_t Images::image_of(const Object& texture, size_t offset) {
 const ImageTexture& Images::open_sampler(uint32_t number) {
     if (const auto known = samplers_.find(number); known != samplers_.end()) return known->second;
     const Object sampler(context_.source, context_.tables.samplers.elements[number], "a sampler");
-    constexpr uint64_t kNearest = 9728;
+    constexpr uint64_t kNearest = 9728, kLinear = 9729;
     ImageTexture out;
     out.wrap_u = read_wrap(sampler, "wrapS");
     out.wrap_v = read_wrap(sampler, "wrapT");
-    out.bilinear = sampler.integer_or("magFilter", 0, 0, 0xffff) != kNearest;
+    const uint64_t filter = sampler.integer_or("magFilter", kLinear, 0, 0xffff);
+    if (filter != kNearest && filter != kLinear)
+        context_.warn("a 'magFilter' is neither 9728 nor 9729; 9729, which is bilinear, is used",
+                      sampler.offset_of("magFilter"));
+    out.bilinear = filter != kNearest;
     return samplers_.emplace(number, out).first->second;
 }
 

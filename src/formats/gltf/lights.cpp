@@ -3,6 +3,7 @@
 
 #include "formats/gltf/nodes.h"
 #include "math/transform.h"
+#include "math/vector.h"
 
 namespace steradian::gltf {
 namespace {
@@ -30,6 +31,9 @@ Light read_light(Context& context, const Object& light) {
     static constexpr std::array<std::string_view, 3> kTypes{"point", "spot", "directional"};
     const size_t type = json::read_choice(context.source, light.require("type"), "'type'", kTypes);
     const Rgb color = light.color_or("color", {1, 1, 1}, {0, 1e15});
+    if (max_component(color) > 1)
+        context.warn("'color' of a light must be between 0 and 1; it is taken as it is", light.offset_of("color"),
+                     "out-of-range");
     // Candela and lux are taken as W/sr and W/m²; an exporter that had watts has multiplied them.
     constexpr double kLumensPerWatt = 683;
     const double unit = context.options.gltf_light_units == GltfLightUnits::photometric ? 1 / kLumensPerWatt : 1;

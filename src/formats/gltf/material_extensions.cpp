@@ -181,8 +181,7 @@ void Materials::read_sheen(const Object& sheen, Reading& r) {
     const float most = max_component(color);
     if (most == 0) return;
     context_.not_honoured(
-        "sheen is approximated: how its fibres hide each other, and how much of the light the base gets, is that of "
-        "OpenPBR's fuzz",
+        "sheen is approximated by OpenPBR's fuzz, whose fibres hide each other, and darken the base, in another way",
         sheen.offset());
     OpenPbrMaterial& s = r.surface;
     s.fuzz_weight.value = most;

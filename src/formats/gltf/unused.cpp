@@ -94,7 +94,35 @@ void add_textures(const Tables& tables, References& references) {
     }
 }
 
+std::optional<double> number(Value object, std::string_view key) {
+    const auto value = member(object, key);
+    return value && value->is(Kind::number) ? std::optional(value->number()) : std::nullopt;
+}
+
 }  // namespace
+
+void find_ineffective(Context& context) {
+    for (const Value material : context.tables.materials.elements) {
+        const auto occlusion = member(material, "occlusionTexture");
+        if (!occlusion) continue;
+        context.unused("'occlusionTexture' has no effect: how much light comes into corners is computed",
+                       occlusion->offset(), "no-effect");
+        const double strength = number(*occlusion, "strength").value_or(1);
+        if (!(strength >= 0 && strength <= 1))
+            context.unused("'strength' of an 'occlusionTexture' must be between 0 and 1", occlusion->offset(),
+                           "out-of-range");
+    }
+    for (const Value camera : context.tables.cameras.elements)
+        for (const std::string_view kind : {"perspective", "orthographic"}) {
+            const auto shape = member(camera, kind);
+            if (!shape) continue;
+            const auto near = number(*shape, "znear"), far = number(*shape, "zfar");
+            const bool good_near = !near || (kind == "perspective" ? *near > 0 : *near >= 0);
+            if (!good_near || (far && !(*far > near.value_or(0))))
+                context.unused("'znear' of a camera must be positive, and 'zfar' beyond it; they have no effect",
+                               shape->offset(), "out-of-range");
+        }
+}
 
 void find_unused(Context& context) {
     const Tables& tables = context.tables;
