@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lint/check.h"
 #include "math/transform.h"
@@ -92,6 +93,57 @@ void look_for_dots(Check& check) {
     }
 }
 
+/// What fills the bodies of a material and absorbs without scattering.
+std::optional<Rgb> absorption_of(const Scene& scene, MaterialId id) {
+    const Material& material = scene.materials[index(id)];
+    if (const auto* mix = std::get_if<MixMaterial>(&material)) {
+        const auto first = absorption_of(scene, mix->first);
+        return first ? first : absorption_of(scene, mix->second);
+    }
+    const Medium* medium = nullptr;
+    if (const auto* glass = std::get_if<GlassMaterial>(&material)) medium = &glass->interior;
+    if (const auto* m = std::get_if<OpenPbrMaterial>(&material);
+        m && m->transmission_weight.value > 0 && !m->geometry_thin_walled)
+        medium = &m->interior;
+    return medium && is_black(medium->scattering) ? std::optional(medium->absorption) : std::nullopt;
+}
+
+/// How far it is through a closed body, as the mean over all ways: four times its volume over its surface (Cauchy).
+double mean_way_through(const Mesh& mesh, const Affine& world_from_object) {
+    double volume = 0, surface = 0;
+    const Vec3d origin = transform_point(world_from_object, mesh.positions[mesh.indices[0]]);
+    const auto corner = [&](size_t i) {
+        return transform_point(world_from_object, mesh.positions[mesh.indices[i]]) - origin;
+    };
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        const Vec3d a = corner(i), scaled_normal = cross(corner(i + 1) - a, corner(i + 2) - a);
+        volume += dot(a, scaled_normal) / 6, surface += length(scaled_normal) / 2;
+    }
+    return surface > 0 ? 4 * std::fabs(volume) / surface : 0;
+}
+
+/// Large bodies that light would pass through, if it were not absorbed at once: the way that absorbs is in metres
+/// whatever the model is in. Deep water lets more light pass than these.
+void look_for_ink(Check& check) {
+    constexpr double kLarge = 10, kOpaque = 100;
+    for (uint32_t i = 0; i < check.own_instances; ++i) {
+        const Instance& instance = check.scene.instances[i];
+        const Mesh* mesh = check.world.mesh_of(i);
+        const auto absorption = absorption_of(check.scene, instance.material);
+        if (!mesh || !absorption || !(check.world.box(i).size() > kLarge)) continue;
+        const double least = min_of(absorption->r, min_of(absorption->g, absorption->b));
+        if (!(least * check.world.box(i).size() > kOpaque) || !check.bodies.closed(i)) continue;
+        const double way = mean_way_through(*mesh, instance.world_from_object);
+        if (!(least * way > kOpaque)) continue;
+        check.out.add(Rule::scale, Element{ElementKind::instance, i},
+                      fmt::format("{} is transparent and {:.3g} m large, but {} lets half of the light pass through "
+                                  "{:.2g} m: it is black",
+                                  check.object(i), check.world.box(i).size(), check.material(instance.material),
+                                  std::numbers::ln2 / least),
+                      "lengths are metres: a model in millimetres needs a scale of 0.001");
+    }
+}
+
 /// Floats have 24 bits: far from the origin little is left for the shape.
 void look_for_rounding(Check& check) {
     constexpr double kFewestSteps = 4096, kStep = 1.0 / (1 << 23);
@@ -114,7 +166,7 @@ void look_for_rounding(Check& check) {
 }  // namespace
 
 void check_scale(Check& check) {
-    if (check.out.wants(Rule::scale)) look_for_giants(check), look_for_dots(check);
+    if (check.out.wants(Rule::scale)) look_for_giants(check), look_for_dots(check), look_for_ink(check);
     if (check.out.wants(Rule::precision)) look_for_rounding(check);
 }
 

@@ -73,6 +73,15 @@ void almost_normals(LintScene& t, size_t others) {
     t.texture(t.bytes(texels), ColorSpace::srgb);
 }
 
+/// A block of that absorption times a colour, before a camera far away.
+void ink(LintScene& t, float half, float absorption, Rgb color = {1, 1, 1}, float scattering = 0, float thin = 1) {
+    GlassMaterial m;
+    m.interior.absorption = color * absorption;
+    m.interior.scattering = Rgb{1, 1, 1} * scattering;
+    t.s.cameras = {PerspectiveCamera{{0, 0, 60}}};
+    t.place(scaled(cube(half), {1, thin, 1}), t.material(m), translation(0, 8, 0));
+}
+
 const Case kCases[] = {
     {"Albedo", "albedo-above-one",
      [](LintScene& t) {
@@ -91,6 +100,22 @@ const Case kCases[] = {
     {"ThickGiant", "scale", [](LintScene& t) { giant(t, 1800, 0.26f); }},
     {"GiantAroundAll", "scale", [](LintScene& t) { room(t, 900); }},
     {"Dome", "", [](LintScene& t) { room(t, 1100); }},
+    {"Ink", "scale", [](LintScene& t) { ink(t, 6, 12.6f); }},
+    {"DarkGlass", "", [](LintScene& t) { ink(t, 6, 12.4f); }},
+    {"SmallInk", "", [](LintScene& t) { ink(t, 2.88f, 1000); }},
+    {"LargeInk", "scale", [](LintScene& t) { ink(t, 2.89f, 1000); }},
+    {"RedGlass", "",
+     [](LintScene& t) {
+         ink(t, 6, 1000, {0, 1, 1});
+     }},
+    {"Milk", "",
+     [](LintScene& t) {
+         ink(t, 6, 1000, {1, 1, 1}, 1);
+     }},
+    {"ThinInk", "",
+     [](LintScene& t) {
+         ink(t, 6, 1000, {1, 1, 1}, 0, 0.003f);
+     }},
     {"Dot", "scale", [](LintScene& t) { look_from(t, 1.95); }},
     {"SmallThing", "", [](LintScene& t) { look_from(t, 2.05); }},
     {"Coarse", "precision", [](LintScene& t) { far_from_origin(t, 7200); }},
