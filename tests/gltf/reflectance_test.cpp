@@ -180,7 +180,12 @@ TEST(GltfReflectance, AFilmBelowACoat) {
                                 black(more + iridescence + ", \"iridescenceIor\": 2.5}") + "}]"));
     };
     EXPECT_TRUE(load("").fidelity.empty());
-    EXPECT_TRUE(has(load(coat("1") + ", ").fidelity, "an index of a film below a clearcoat"));
+    const auto clamped = [&](const std::string& more) {
+        return has(load(coat("1") + more + ", ").fidelity, "an index of a film below a clearcoat");
+    };
+    EXPECT_TRUE(clamped(""));
+    EXPECT_TRUE(clamped(transmission("\"transmissionFactor\": 0.5")));
+    EXPECT_FALSE(clamped(transmission("\"transmissionFactor\": 1")));
 }
 
 }  // namespace

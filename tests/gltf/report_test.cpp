@@ -105,7 +105,7 @@ TEST(GltfReport, MisspeltProperties) {
 
 TEST(GltfReport, UnknownProperties) {
     const std::string text = with_material(
-        R"("shader": "toon", "extras": {"x": [{"y": 1}]})",
+        R"("shader": "toon", "index": 0, "extras": {"x": [{"y": 1}]})",
         R"("VENDOR": {"nodes": []}, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "lens": 3}}],
                          "asset2": [[{"z": 1}]])",
         R"({"camera": 0, "index": 3, "uuid": "4-2"}, {"uuid": "4-3"})");
@@ -113,6 +113,7 @@ TEST(GltfReport, UnknownProperties) {
               (Lines{"/nodes/1/index 'index' is no property of a node and is ignored [no-effect]",
                      "/nodes/1/uuid 'uuid' is no property of a node and is ignored x2 [no-effect]",
                      "/materials/0/shader 'shader' is no property of a material and is ignored [no-effect]",
+                     "/materials/0/index 'index' is no property of a material and is ignored [no-effect]",
                      "/VENDOR 'VENDOR' is no property of the file's root and is ignored [no-effect]",
                      "/cameras/0/perspective/lens 'lens' is no property of 'perspective' and is ignored [no-effect]"}));
     const LoadedScene loaded = load(text, false);
