@@ -33,20 +33,6 @@ struct Planes {
     Float8 at(uint64_t offset) const { return Float8::of_bytes(first + offset) * scale + origin; }
 };
 
-/// Those of all axes and of single children as well; `offset` as above.
-struct alignas(64) AllPlanes {
-    float plane[6][kWidth];
-    explicit AllPlanes(const Node& node) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const Planes planes(node, axis);
-            for (int i = 2 * axis; i < 2 * axis + 2; ++i)
-                planes.at(static_cast<uint32_t>(i) * kPlaneBytes).store(plane[i]);
-        }
-    }
-    const float* at(uint64_t offset) const { return &plane[0][0] + offset; }
-};
-static_assert(kPlaneBytes == kWidth);
-
 /// Four triangles.
 using Block = CompactLanes;
 

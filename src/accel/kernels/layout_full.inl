@@ -34,13 +34,6 @@ struct Planes {
     Float8 at(uint64_t offset) const { return Float8::load(reinterpret_cast<const float*>(first + offset)); }
 };
 
-/// Those of all axes and of single children as well; `offset` as above.
-struct AllPlanes {
-    const char* first;
-    explicit AllPlanes(const Node& node) : first(reinterpret_cast<const char*>(&node)) {}
-    const float* at(uint64_t offset) const { return reinterpret_cast<const float*>(first + offset); }
-};
-
 /// Four triangles.
 struct Block {
     const TriangleBlock* at;

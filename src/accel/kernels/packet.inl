@@ -122,19 +122,27 @@ inline bool form(Packet& p) {
     return true;
 }
 
+/// The planes of a node's children, decoded, for looking at single children. Where all rays have one origin, relative
+/// to it: that is the same difference for all of them.
+struct alignas(64) ChildPlanes {
+    float near[3][kWidth], far[3][kWidth];  ///< which rays of the packet meet first and last
+};
+
 /// A bit for every child that some ray of the packet may meet, at its place in the order from far to near. For every
 /// ray t = (plane - o) * inv_d lies between the least and the largest of the four products of ends of intervals, and so
-/// it does when all of them are rounded.
-inline uint32_t test_intervals(const Packet& p, const Node& node, const AllPlanes& planes) {
+/// it does when all of them are rounded. What is tested here does not wait for `kept` to come back from memory.
+inline uint32_t test_intervals(const Packet& p, const Node& node, ChildPlanes& kept) {
     Float8 in = Float8::all(p.least_start), out = Float8::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
-        const Float8 inv_small = Float8::all(p.inv_d_range[axis][0]), inv_large = Float8::all(p.inv_d_range[axis][1]);
+        const Planes planes(node, axis);
+        const Float8 near_plane = planes.at(p.near_plane[axis]), far_plane = planes.at(p.far_plane[axis]);
         // (near - o) * inv_d is least for the origin farthest along the ray; (far - o) * inv_d is largest for the
         // other.
-        const Float8 near =
-            Float8::load(planes.at(p.near_plane[axis])) - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
-        const Float8 far =
-            Float8::load(planes.at(p.far_plane[axis])) - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
+        const Float8 near = near_plane - Float8::all(p.o_range[axis][p.negative[axis] ? 0 : 1]);
+        const Float8 far = far_plane - Float8::all(p.o_range[axis][p.negative[axis] ? 1 : 0]);
+        (p.one_origin ? near : near_plane).store(kept.near[axis]);
+        (p.one_origin ? far : far_plane).store(kept.far[axis]);
+        const Float8 inv_small = Float8::all(p.inv_d_range[axis][0]), inv_large = Float8::all(p.inv_d_range[axis][1]);
         in = larger(smaller(near * inv_small, near * inv_large), in);
         out = smaller(larger(far * inv_small, far * inv_large), out);
     }
@@ -142,14 +150,17 @@ inline uint32_t test_intervals(const Packet& p, const Node& node, const AllPlane
 }
 
 /// The rays, of those given, that meet the child; their t_in.
-inline uint32_t test_child(const Packet& p, const AllPlanes& planes, uint32_t child, uint32_t rays, float* t_in) {
+inline uint32_t test_child(const Packet& p, const ChildPlanes& planes, uint32_t child, uint32_t rays, float* t_in) {
     Float16 in = Float16::load(p.start), out = Float16::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
-        const Float16 o = Float16::load(p.o[axis]), inv_d = Float16::load(p.inv_d[axis]);
-        const float near = planes.at(p.near_plane[axis])[child];
-        const float far = planes.at(p.far_plane[axis])[child];
-        in = larger((Float16::all(near) - o) * inv_d, in);
-        out = smaller((Float16::all(far) - o) * inv_d, out);
+        Float16 near = Float16::all(planes.near[axis][child]), far = Float16::all(planes.far[axis][child]);
+        if (!p.one_origin) {
+            const Float16 o = Float16::load(p.o[axis]);
+            near = near - o, far = far - o;
+        }
+        const Float16 inv_d = Float16::load(p.inv_d[axis]);
+        in = larger(near * inv_d, in);
+        out = smaller(far * inv_d, out);
     }
     out = out * Float16::all(kFarScale) + Float16::all(kFarPad);
     in.store(t_in);
@@ -245,13 +256,15 @@ inline void trace_packet(Packet& p, const World& world, PacketEntry* stack) {
             visit_leaf<kMode>(p, world, ref, rays, *entry_of->parent, entry_of->child);
         } else {
             const Node& node = node_at(world.upper, ref);
-            const AllPlanes planes(node);
+            ChildPlanes planes;
             for (uint32_t maybe = test_intervals(p, node, planes); maybe; maybe &= maybe - 1) {
                 const uint32_t child = child_at(node, static_cast<uint32_t>(__builtin_ctz(maybe)), p.octant_shift);
                 PacketEntry& entry = stack[depth];
                 entry.ref = node.child[child];
                 entry.parent = &node, entry.child = child;
                 entry.rays = test_child(p, planes, child, rays, entry.t_in);
+                // Whether it is met or not: nobody can guess that.
+                prefetch(world.upper, entry.ref);
                 depth += entry.rays != 0;
             }
         }
