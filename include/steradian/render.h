@@ -82,7 +82,7 @@ struct ErrorReport {
     double estimate = 0;
     double bound = 0;        ///< no claim unless `certified`; may be infinite
     bool certified = false;  ///< in `confidence` of all cases this picture's error is at most `bound`, which is at most
-                             ///< the target
+                             ///< the target; but for light that is in many pixels and that no sample met
     std::string reason;      ///< why not: a sentence's part, in English
     static constexpr double confidence = 0.95;
 };

@@ -14,7 +14,7 @@ inline float eval_input(const ShadingScene& scene, const FloatInput& in, const S
     return in.value * clamp_to(eval_texture(scene, *in.texture, point).r, 0.0f, 1.0f);
 }
 inline Rgb eval_input(const ShadingScene& scene, const ColorInput& in, const SurfacePoint& point) {
-    return in.texture ? in.value * eval_texture(scene, *in.texture, point) : in.value;
+    return in.texture ? in.value * eval_color(scene, *in.texture, point) : in.value;
 }
 
 /// Materials that are no mixes, whose weights sum to 1; mixes within mixes are taken apart, and what has no weight is

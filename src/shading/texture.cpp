@@ -303,6 +303,11 @@ Rgb eval_texture(const ShadingScene& scene, TextureId id, const SurfacePoint& po
     return std::visit([&](const auto& t) { return eval_at(scene, id, t, point); }, scene.scene.textures[index(id)]);
 }
 
+Rgb eval_color(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept {
+    const Rgb c = eval_texture(scene, id, point);
+    return {max_of(c.r, 0.0f), max_of(c.g, 0.0f), max_of(c.b, 0.0f)};
+}
+
 Vec2 texture_slope(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept {
     return std::visit([&](const auto& t) { return slope_at(scene, id, t, point); }, scene.scene.textures[index(id)]);
 }

@@ -19,6 +19,10 @@ Rgb eval_texture(const Scene& scene, TextureId id, Vec2 uv) noexcept;
 /// At a point of a surface: also by its footprint, and what belongs to the surface itself.
 Rgb eval_texture(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept;
 
+/// The same of a colour that reflects, passes or shines: no channel is below 0, which texels of edited or filtered
+/// float images are now and then.
+Rgb eval_color(const ShadingScene& scene, TextureId id, const SurfacePoint& point) noexcept;
+
 /// Which set of texture coordinates it is looked up with.
 uint32_t uv_set_of(const Scene& scene, TextureId id) noexcept;
 

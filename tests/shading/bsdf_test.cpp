@@ -266,5 +266,50 @@ TEST(Bsdf, IsMadeFromMaterialAndTexture) {
     }
 }
 
+/// Pictures that were filtered or came from another gamut have texels a little below zero.
+TEST(Bsdf, ReflectsNothingWhereATextureIsNegative) {
+    Scene scene;
+    const auto texture = [&](Rgb c) { return add<TextureId>(scene.textures, Texture{ConstantTexture{c}}); };
+    for (const float green : {-0.01f, 0.0f}) {
+        const TextureId color = texture({0.5f, green, 0.3f});
+        OpenPbrMaterial matte, metal, glass;
+        matte.base_color = {{1, 1, 1}, color};
+        metal.base_metalness.value = 1, metal.base_color = {{1, 1, 1}, color};
+        glass.transmission_weight.value = 1, glass.specular_color = {{1, 1, 1}, color};
+        const Material materials[] = {DiffuseMaterial{color, true},
+                                      DiffuseMaterial{color, true, 0.6f},
+                                      DiffuseTransmissionMaterial{color, color},
+                                      ConductorMaterial{SchlickReflectance{color, {1, 1, 1}}, {0.5f, 0.5f}},
+                                      matte,
+                                      metal,
+                                      glass};
+        for (const Material& m : materials) scene.materials.push_back(m);
+    }
+    const ShapeId shape = add<ShapeId>(scene.shapes, Shape{Rectangle{}});
+    const auto count = static_cast<uint32_t>(scene.materials.size());
+    for (uint32_t i = 0; i < count; ++i) add<InstanceId>(scene.instances, Instance{shape, MaterialId(i), {}});
+    Diagnostics diagnostics;
+    const ShadingScene shading = std::move(make_shading_scene(std::move(scene), diagnostics)).value();
+    const auto bsdf_of = [&](uint32_t instance) {
+        SurfacePoint point = test::receiver({}, {0, 0, 1});
+        point.instance = instance;
+        return make_bsdf(shading, point);
+    };
+    Random random(31);
+    for (uint32_t i = 0; i < count / 2; ++i) {
+        const Bsdf negative = bsdf_of(i), zero = bsdf_of(i + count / 2);
+        for (int k = 0; k < 100; ++k) {
+            const Vec3 wo = static_cast<Vec3>(random.direction()), wi = static_cast<Vec3>(random.direction());
+            EXPECT_EQ(eval(negative, wo, wi).f_cos, eval(zero, wo, wi).f_cos) << i;
+            const float choice = random.uniform();
+            const Vec2 u = random.uniform2();
+            const auto a = sample(negative, wo, choice, u), b = sample(zero, wo, choice, u);
+            ASSERT_EQ(a.has_value(), b.has_value()) << i;
+            if (!a) continue;
+            EXPECT_EQ(a->weight, b->weight) << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace steradian

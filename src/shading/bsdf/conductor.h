@@ -17,7 +17,7 @@ inline ConductorBsdf make_lobe(const ConductorMaterial& material, const LobeCont
         out.mean_fresnel = context.material.mean_fresnel;
     } else {
         const auto& schlick = std::get<SchlickReflectance>(material.reflectance);
-        const ConductorBsdf::Schlick colors{read(schlick.normal), schlick.grazing};
+        const ConductorBsdf::Schlick colors{eval_color(context.scene, schlick.normal, context.point), schlick.grazing};
         out.fresnel = colors;
         out.mean_fresnel = mean_fresnel_schlick(colors.normal, colors.grazing);
     }

@@ -10,7 +10,7 @@
 namespace steradian {
 
 inline DiffuseBsdf make_lobe(const DiffuseMaterial& material, const LobeContext& context) {
-    return {eval_texture(context.scene, material.reflectance, context.point), material.two_sided, material.roughness};
+    return {eval_color(context.scene, material.reflectance, context.point), material.two_sided, material.roughness};
 }
 
 inline bool lobe_is_specular(const DiffuseBsdf&) { return false; }

@@ -7,7 +7,7 @@
 namespace steradian {
 
 inline DiffuseTransmissionBsdf make_lobe(const DiffuseTransmissionMaterial& material, const LobeContext& context) {
-    const auto read = [&](TextureId id) { return eval_texture(context.scene, id, context.point); };
+    const auto read = [&](TextureId id) { return eval_color(context.scene, id, context.point); };
     return {read(material.reflectance), read(material.transmittance)};
 }
 

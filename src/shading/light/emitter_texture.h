@@ -14,8 +14,7 @@ inline Rgb area_radiance(const ShadingScene& scene, const AreaLight& light, cons
     if (!light.texture) return light.radiance;
     SurfacePoint exact = point;
     exact.footprint = 0;
-    const Rgb t = eval_texture(scene, *light.texture, exact);
-    return light.radiance * Rgb{max_of(t.r, 0.0f), max_of(t.g, 0.0f), max_of(t.b, 0.0f)};
+    return light.radiance * eval_color(scene, *light.texture, exact);
 }
 
 /// How bright the texture makes the light, as a factor of `radiance`, mean of the channels: for choosing among lights
