@@ -6,6 +6,10 @@
 #include <numeric>
 #include <thread>
 
+#ifdef __linux__
+#include <sched.h>
+#endif
+
 #include "clock.h"
 
 namespace steradian::bench {
@@ -40,11 +44,30 @@ struct Lap {
     }
 };
 
+/// This thread to the `index`-th of the processors that it may use. New threads may share one for the whole of a lap
+/// where anything else runs on the machine, and an engine that is timed on two processors has to have both.
+void take_processor(uint32_t index) {
+#ifdef __linux__
+    cpu_set_t usable, own;
+    if (sched_getaffinity(0, sizeof(usable), &usable) != 0) return;
+    CPU_ZERO(&own);
+    for (int cpu = 0; cpu < CPU_SETSIZE && CPU_COUNT(&own) == 0; ++cpu)
+        if (CPU_ISSET(cpu, &usable) && index-- == 0) CPU_SET(cpu, &own);
+    if (CPU_COUNT(&own) == 1) sched_setaffinity(0, sizeof(own), &own);
+#else
+    static_cast<void>(index);
+#endif
+}
+
 double run(Lap& lap) {
     if (lap.entrant.threads == 1) return lap.work();
     std::vector<double> spent(lap.entrant.threads);
     std::vector<std::thread> threads;
-    for (double& seconds : spent) threads.emplace_back([&lap, &seconds] { seconds = lap.work(); });
+    for (uint32_t i = 0; i < lap.entrant.threads; ++i)
+        threads.emplace_back([&lap, &spent, i] {
+            take_processor(i);
+            spent[i] = lap.work();
+        });
     for (std::thread& thread : threads) thread.join();
     return std::accumulate(spent.begin(), spent.end(), 0.0) / double(spent.size());
 }
