@@ -23,7 +23,7 @@ BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const G
                          const AccelOptions& options);
 
 /// What it takes for ordinary meshes and scattered primitives: what is held then is at most 1.3 times more or less than
-/// `result`, and 1.4 times than `peak` (tests/accel/memory_test.cpp). Opened instances (OpenInstances) are not
+/// `result`, and 1.5 times than `peak` (tests/accel/memory_test.cpp). Opened instances (OpenInstances) are not
 /// expected, but that it is tried. In the compact layout it matters how many vertices triangles share, so different
 /// positions are counted, in one pass over them; indices are not looked at.
 BuildMemory expected_build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,

@@ -220,7 +220,8 @@ constexpr int64_t kLittleHeld = 2 << 10;
 /// How far above what is held the bounds are at most, for what is ordinary: of the result, and of the peak, in the full
 /// layout; of blocks that share vertices they know nothing. And how far off is what is expected.
 constexpr double kResultSlack = 1.35, kPeakSlack = 3.5, kHighQualitySlack = 2, kCompactSlack = 2;
-constexpr double kResultOff = 1.3, kPeakOff = 1.4;
+/// Which workers hold their most at the same moment is chance: 1.4 without a sanitizer, 1.46 was seen with one.
+constexpr double kResultOff = 1.3, kPeakOff = 1.5;
 
 void expect_tight(const BuildMemory& bound, const bench::MemoryUse& use, const AccelOptions& options,
                   const std::string& what) {
