@@ -213,14 +213,16 @@ void print_summary(const RenderSettings& s, const RenderResult& r, const std::ve
                              outputs);
 }
 
+/// The count goes first: the command ends the line, to be copied.
 void warn_bad_samples(const RenderOptions& o, const RenderStatistics& s, Diagnostics& diagnostics) {
     if (!s.first_bad_sample) return;
     const PixelSample& b = *s.first_bad_sample;
+    const bool one = s.bad_samples == 1;
     diagnostics.warn(
-        fmt::format("samples that were not finite or negative were dropped; the first is sample {} of "
-                    "pixel {},{} with ({}, {}, {}); to look at it: {}",
-                    b.sample, b.x, b.y, b.value.r, b.value.g, b.value.b, replay_command(o.scene, o.settings, b)),
-        {}, s.bad_samples);
+        fmt::format("{} sample{} not finite or negative and {} dropped; {} sample {} of pixel {},{} with "
+                    "({}, {}, {}); to look at it: {}",
+                    s.bad_samples, one ? " was" : "s were", one ? "was" : "were", one ? "it is" : "the first is",
+                    b.sample, b.x, b.y, b.value.r, b.value.g, b.value.b, replay_command(o.scene, o.settings, b)));
 }
 
 void print_fireflies(const RenderOptions& o, const RenderStatistics& s) {

@@ -69,6 +69,22 @@ TEST_F(ReplayCommand, RepeatsTheFirefliesThatRenderNames) {
     EXPECT_GT(red, 0);
 }
 
+TEST_F(ReplayCommand, EndsTheLineThatReportsABadSample) {
+    spit(folder_.file("bright.json"), R"({
+      "version": 1, "film": {"resolution": [8, 8]}, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
+      "objects": [{"type": "sphere", "material": {"type": "diffuse", "reflectance": 1e6, "two_sided": true}},
+                  {"type": "sphere", "radius": 8, "material": {"type": "diffuse", "reflectance": 1e6, "two_sided": true}}],
+      "lights": [{"type": "point", "position": [0, 0, 3], "intensity": 1e30}]})");
+    const Outcome render = steradian({"render", "bright.json", "--spp", "4", "-o", "a.exr"});
+    ASSERT_EQ(render.code, 0) << render.err;
+    const size_t at = render.err.find("steradian replay ");
+    ASSERT_NE(at, std::string::npos) << render.err;
+    EXPECT_NE(render.err.find(" samples were not finite or negative and were dropped"), std::string::npos);
+    const Outcome o = steradian(words(render.err.substr(at, render.err.find('\n', at) - at)));
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("inf"), std::string::npos) << o.out;
+}
+
 TEST_F(ReplayCommand, PrintsTheWavelengthWhereGlassDisperses) {
     spit(folder_.file("glass.json"), R"({
       "version": 1, "film": {"resolution": [8, 8]}, "camera": {"position": [0, 0, 5], "look_at": [0, 0, 0]},
