@@ -12,8 +12,8 @@
 
 namespace steradian {
 
-/// How a channel is stored where a format leaves a choice (EXR): as the writer's options say, always in 32-bit floats,
-/// or in whole numbers from 0 to 2³² - 1.
+/// How a channel is stored where a format leaves a choice (EXR): as the writer's options say, but for what is by its
+/// name a measurement, which is 32-bit (docs/aovs.md); always in 32-bit floats; or in whole numbers from 0 to 2³² - 1.
 enum class ChannelType : uint8_t { by_options, single, uint32 };
 
 /// A picture with named float channels, row by row from the top left corner, channels interleaved:

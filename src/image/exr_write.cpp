@@ -86,10 +86,18 @@ Plane plane_of(const Image& image, size_t channel, Imf::PixelType type, uint64_t
     return out;
 }
 
+/// Depths, positions, texture coordinates and variances, as AOVs call them: half has neither the range nor the digits
+/// for them, whoever writes them.
+bool is_measurement(std::string_view channel) {
+    return channel == "Z" || channel.starts_with("P.") || channel.starts_with("uv.") ||
+           channel.starts_with("variance.");
+}
+
 Imf::PixelType type_of(const Image& image, size_t channel, ExrPrecision precision) {
     const ChannelType type = image.types.empty() ? ChannelType::by_options : image.types[channel];
     if (type == ChannelType::uint32) return Imf::UINT;
-    return type == ChannelType::by_options && precision == ExrPrecision::half ? Imf::HALF : Imf::FLOAT;
+    if (type == ChannelType::single || is_measurement(image.channels[channel])) return Imf::FLOAT;
+    return precision == ExrPrecision::half ? Imf::HALF : Imf::FLOAT;
 }
 
 void warn_clamped(uint64_t halves, uint64_t wholes, const std::string& path, Diagnostics& diagnostics) {

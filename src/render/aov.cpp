@@ -28,7 +28,7 @@ struct Row {
     float (*value)(const Sums&);
 };
 
-constexpr ChannelType kAny = ChannelType::by_options, kSingle = ChannelType::single, kWhole = ChannelType::uint32;
+constexpr ChannelType kAny = ChannelType::by_options, kWhole = ChannelType::uint32;
 
 /// The channels of one light part.
 void add_part(size_t part, const std::string& layer, auto& channels) {
@@ -51,7 +51,7 @@ void add_mattes(MatteCounts::Ranking Sums::*ranking, const std::string& name, au
     }
 }
 
-/// docs/aovs.md has them with their reasons.
+/// docs/aovs.md has them with their reasons. What is no whole number and yet never half is so by its name, in files.
 constexpr Row kRows[] = {
     {Aov::alpha, "A", kAny, [](const Sums& s) { return clamp_to(feature(s.features.alpha, s), 0.0f, 1.0f); }},
     {Aov::albedo, "albedo.R", kAny, [](const Sums& s) { return feature(s.features.albedo.r, s); }},
@@ -60,18 +60,18 @@ constexpr Row kRows[] = {
     {Aov::normal, "N.X", kAny, [](const Sums& s) { return feature(s.features.normal.r, s); }},
     {Aov::normal, "N.Y", kAny, [](const Sums& s) { return feature(s.features.normal.g, s); }},
     {Aov::normal, "N.Z", kAny, [](const Sums& s) { return feature(s.features.normal.b, s); }},
-    {Aov::depth, "Z", kSingle, [](const Sums& s) { return s.centre.depth; }},
-    {Aov::position, "P.X", kSingle, [](const Sums& s) { return s.centre.position.x; }},
-    {Aov::position, "P.Y", kSingle, [](const Sums& s) { return s.centre.position.y; }},
-    {Aov::position, "P.Z", kSingle, [](const Sums& s) { return s.centre.position.z; }},
-    {Aov::uv, "uv.U", kSingle, [](const Sums& s) { return s.centre.uv.x; }},
-    {Aov::uv, "uv.V", kSingle, [](const Sums& s) { return s.centre.uv.y; }},
+    {Aov::depth, "Z", kAny, [](const Sums& s) { return s.centre.depth; }},
+    {Aov::position, "P.X", kAny, [](const Sums& s) { return s.centre.position.x; }},
+    {Aov::position, "P.Y", kAny, [](const Sums& s) { return s.centre.position.y; }},
+    {Aov::position, "P.Z", kAny, [](const Sums& s) { return s.centre.position.z; }},
+    {Aov::uv, "uv.U", kAny, [](const Sums& s) { return s.centre.uv.x; }},
+    {Aov::uv, "uv.V", kAny, [](const Sums& s) { return s.centre.uv.y; }},
     {Aov::object, "object.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.object); }},
     {Aov::material, "material.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.material); }},
     {Aov::primitive, "primitive.id", kWhole, [](const Sums& s) { return static_cast<float>(s.centre.primitive); }},
-    {Aov::variance, "variance.R", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.r); }},
-    {Aov::variance, "variance.G", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.g); }},
-    {Aov::variance, "variance.B", kSingle, [](const Sums& s) { return static_cast<float>(s.variance.b); }},
+    {Aov::variance, "variance.R", kAny, [](const Sums& s) { return static_cast<float>(s.variance.r); }},
+    {Aov::variance, "variance.G", kAny, [](const Sums& s) { return static_cast<float>(s.variance.g); }},
+    {Aov::variance, "variance.B", kAny, [](const Sums& s) { return static_cast<float>(s.variance.b); }},
     {Aov::samples, "samples.count", kWhole, [](const Sums& s) { return static_cast<float>(s.samples); }},
 };
 

@@ -121,6 +121,25 @@ TEST(RoundTrip, ChannelsHaveTypesOfTheirOwn) {
     EXPECT_EQ(again.pixels[8], image.pixels[8]);
 }
 
+TEST(RoundTrip, MeasurementsAreNeverHalf) {
+    const std::vector<std::string> singles{"Z", "P.X", "P.Y", "P.Z", "uv.U", "uv.V", "variance.R"};
+    for (const std::string& name : singles) {
+        Image image = sample_image(2, 1, {name});
+        image.pixels = {1e10f, 1.0f / 3};
+        Diagnostics diagnostics;
+        const std::string file = encoded(image, "a.exr", {.exr = ExrPrecision::half}, &diagnostics);
+        EXPECT_EQ(decoded(file).pixels, image.pixels) << name;
+        // The same when the file is written again.
+        EXPECT_EQ(decoded(encoded(decoded(file), "b.exr", {.exr = ExrPrecision::half})).pixels, image.pixels) << name;
+        EXPECT_TRUE(diagnostics.warnings().empty());
+    }
+    for (const char* name : {"R", "N.Z", "albedo.R", "uvw", "Pz"}) {
+        Image image = sample_image(2, 1, {name});
+        image.pixels = {1, 1.0f / 3};
+        EXPECT_NE(decoded(encoded(image, "a.exr", {.exr = ExrPrecision::half})).pixels, image.pixels) << name;
+    }
+}
+
 TEST(RoundTrip, WholeNumbersAreClampedAndCounted) {
     Image image = sample_image(5, 1, {"id"});
     image.types = {ChannelType::uint32};
