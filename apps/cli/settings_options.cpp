@@ -34,6 +34,36 @@ namespace {
 constexpr std::array<std::string_view, 2> kLightUnits{"radiometric", "photometric"};
 constexpr const char* kSizeHint = "for example --size 1920x1080";
 
+/// How the help introduces it: one that is not here does not compile.
+std::string_view description(IntegratorKind kind) {
+    switch (kind) {
+        case IntegratorKind::path:
+            return ": all light; ";
+        case IntegratorKind::direct:
+            return ": what arrives without detours; ";
+        case IntegratorKind::ao:
+            return ": ambient occlusion. To look at a scene:\n";
+        case IntegratorKind::normals:
+        case IntegratorKind::albedo:
+        case IntegratorKind::uv:
+            return ", ";
+        case IntegratorKind::depth:
+            return " (metres), ";
+        case IntegratorKind::primitive:
+            return " (a colour each), ";
+        case IntegratorKind::cost:
+            return " (of the hierarchy, as a heat map)";
+    }
+    return {};
+}
+
+std::string integrator_help() {
+    std::string out;
+    for (const std::string_view name : names_of<IntegratorKind>())
+        out += std::string(name) + std::string(description(*find_name<IntegratorKind>(name)));
+    return out;
+}
+
 Result<Filter> parse_filter(const std::string& text) {
     const size_t colon = text.find(':');
     const auto kind = find_name<FilterKind>(text.substr(0, colon));
@@ -365,10 +395,7 @@ void add_settings_options(CLI::App* c, SettingsOptions& options) {
                         "MiB that a glTF file's geometry and texels may take even where that is more than 256 times\n"
                         "the bytes in use: 320 unless said otherwise, against hostile files")
         ->group("Picture");
-    add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(),
-               "path: all light; direct: what arrives without detours; ao: ambient occlusion. To look at a scene:\n"
-               "normals, albedo, uv, depth (metres), primitive (a colour each)")
-        ->group("Picture");
+    add_choice(c, "--integrator", options.integrator, names_of<IntegratorKind>(), integrator_help())->group("Picture");
     add_count<uint32_t>(c, "--max-depth", options.max_depth, 0, kMaxDepth,
                         "Bounces: 0 only what glows, 1 direct light, more for mirrors, glass and indirect light")
         ->group("Picture");

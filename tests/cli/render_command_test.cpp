@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "base/names.h"
 #include "program.h"
 #include "steradian/image_io.h"
 
@@ -210,6 +211,15 @@ TEST_F(RenderCommand, UsageErrorsExitWith2AndSayWhatToDo) {
     expect({"render", "scene.json", "-o", "a.png", "-o", "a.png"}, "given twice");
     expect({"render", "scene.json", "--threads", "100000"}, "--threads");
     expect_files({});
+}
+
+TEST_F(RenderCommand, HelpNamesEveryIntegrator) {
+    const std::string help = steradian({"render", "--help"}).out;
+    const size_t begin = help.find("--integrator"), end = help.find("--max-depth");
+    ASSERT_TRUE(begin < end && end != std::string::npos);
+    const std::string about = help.substr(begin, end - begin);
+    for (const std::string_view name : names_of<IntegratorKind>())
+        EXPECT_NE(about.find(name), std::string::npos) << name << about;
 }
 
 TEST_F(RenderCommand, HelpAndVersionExitWith0) {
