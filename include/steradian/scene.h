@@ -384,7 +384,7 @@ struct IntensityProfile {
 struct GoniometricLight {
     Vec3 position;
     Vec3 direction{0, -1, 0};  ///< where vertical angle 0 points
-    /// Degrees that the planes are turned about `direction`, counter-clockwise seen against it, from where plane 0 is:
+    /// Degrees that the planes are turned about `direction`, counter-clockwise seen along it, from where plane 0 is:
     /// at +X for a light that points down, and turned along by the shortest way for one that points elsewhere.
     float rotation = 0;
     Rgb intensity{1, 1, 1};  ///< W/sr per candela of the profile
