@@ -5,7 +5,7 @@
 
 #include "lint/check.h"
 #include "lint/texels.h"
-#include "lint/texture_uses.h"
+#include "scene/texture_uses.h"
 
 namespace steradian::lint_detail {
 namespace {

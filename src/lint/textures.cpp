@@ -6,7 +6,7 @@
 
 #include "lint/check.h"
 #include "lint/texels.h"
-#include "lint/texture_uses.h"
+#include "scene/texture_uses.h"
 #include "shading/texture.h"
 
 namespace steradian::lint_detail {
@@ -21,7 +21,7 @@ public:
     explicit TextureCheck(Check& check) : check_(check), scene_(check.scene), texels_(check.scene) {}
 
     void run() {
-        const auto look = [&](TextureId id, Role role, std::string_view what) { look_at(id, role, what); };
+        const auto look = [&](TextureId id, TextureRole role, std::string_view what) { look_at(id, role, what); };
         for (uint32_t i = 0; i < scene_.materials.size(); ++i) {
             user_ = check_.material(MaterialId(i));
             each_texture(scene_.materials[i], look);
@@ -33,7 +33,7 @@ public:
         for (uint32_t i = 0; i < scene_.lights.size(); ++i) {
             user_ = check_.name({ElementKind::light, i});
             const auto* area = std::get_if<AreaLight>(&scene_.lights[i]);
-            if (area && area->texture) look_at(*area->texture, Role::emission, "texture");
+            if (area && area->texture) look_at(*area->texture, TextureRole::emission, "texture");
         }
         for (uint32_t i = 0; i < scene_.images.size(); ++i)
             if (const uint64_t bad = count_bad_texels(scene_.images[i], false))
@@ -44,24 +44,24 @@ public:
     }
 
 private:
-    void look_at(TextureId whole, Role role, std::string_view what) {
+    void look_at(TextureId whole, TextureRole role, std::string_view what) {
         each_factor(scene_, whole, [&](TextureId id) {
             const auto* texture = std::get_if<ImageTexture>(&scene_.textures[index(id)]);
             // Once for each texture and what it is read for, however many materials do.
             if (!texture || !seen_.insert({id, role}).second) return;
             const RawImage& image = scene_.images[index(texture->image)];
             const Element element{ElementKind::texture, index(id)};
-            if (!(role == Role::color && is_of_normals(image, element, what)))
+            if (!(role == TextureRole::color && is_of_normals(image, element, what)))
                 color_space(*texture, image, element, role, what);
-            if (role == Role::number && !holds_integers(image)) range(*texture, element, what);
-            if (role == Role::normal) normals(image, element);
+            if (role == TextureRole::number && !holds_integers(image)) range(*texture, element, what);
+            if (role == TextureRole::normal) normals(image, element);
         });
     }
 
-    void color_space(const ImageTexture& texture, const RawImage& image, Element element, Role role,
+    void color_space(const ImageTexture& texture, const RawImage& image, Element element, TextureRole role,
                      std::string_view what) {
         if (!check_.out.wants(Rule::color_space)) return;
-        const bool is_color = role == Role::color || role == Role::emission;
+        const bool is_color = role == TextureRole::color || role == TextureRole::emission;
         const bool as_srgb = texture.color_space == ColorSpace::srgb;
         if (is_color ? (as_srgb || image.format != TexelFormat::u8 || image.channels < 3) : !as_srgb) return;
         if (texels_.range(texture.image, texture.color_space).black_and_white) return;
@@ -118,7 +118,7 @@ private:
     const Scene& scene_;
     Texels texels_;
     std::string user_;
-    std::set<std::pair<TextureId, Role>> seen_;
+    std::set<std::pair<TextureId, TextureRole>> seen_;
 };
 
 /// Image and checker textures of a material and its parts that look different in different places.
@@ -126,7 +126,7 @@ class Lookups {
 public:
     explicit Lookups(const Scene& scene) : scene_(scene), of_(scene.materials.size()), colors_(scene.materials.size()) {
         for (uint32_t i = 0; i < scene.materials.size(); ++i) {
-            each_texture(scene.materials[i], [&](TextureId t, Role, std::string_view) { add(i, t); });
+            each_texture(scene.materials[i], [&](TextureId t, TextureRole, std::string_view) { add(i, t); });
             if (const auto* mix = std::get_if<MixMaterial>(&scene.materials[i]))
                 for (const MaterialId part : {mix->first, mix->second}) {
                     of_[i] |= of_[index(part)];
@@ -134,7 +134,7 @@ public:
                 }
         }
         for (const Relief& relief : scene.reliefs)
-            each_texture(relief, [&](TextureId t, Role, std::string_view) { add(index(relief.material), t); });
+            each_texture(relief, [&](TextureId t, TextureRole, std::string_view) { add(index(relief.material), t); });
     }
     /// Bit n stands for set n.
     uint32_t uv_sets(MaterialId id) const { return of_[index(id)]; }

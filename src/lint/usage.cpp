@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "lint/check.h"
-#include "lint/texture_uses.h"
+#include "scene/texture_uses.h"
 
 namespace steradian::lint_detail {
 namespace {
@@ -23,7 +23,7 @@ public:
                                              scene.profiles.size()};
         for (size_t kind = 0; kind < kElementKinds; ++kind) used_[kind].resize(sizes[kind]);
         const auto texture = [&](TextureId id) { mark(ElementKind::texture, id); };
-        const auto of_material = [&](TextureId id, Role, std::string_view) { texture(id); };
+        const auto of_material = [&](TextureId id, TextureRole, std::string_view) { texture(id); };
         for (const Texture& t : scene.textures) {
             if (const auto* image = std::get_if<ImageTexture>(&t)) mark(ElementKind::image, image->image);
             if (const auto* product = std::get_if<ProductTexture>(&t))

@@ -5,9 +5,11 @@
 #include <new>
 #include <tuple>
 
+#include "base/text.h"
 #include "math/elementary.h"
 #include "math/warp.h"
 #include "scene/emission.h"
+#include "scene/texture_uses.h"
 #include "shading/environment.h"
 #include "shading/fresnel.h"
 #include "shading/light/emitter_texture.h"
@@ -324,32 +326,35 @@ std::vector<std::shared_ptr<const MipMap>> make_mip_maps(const Scene& scene) {
     return out;
 }
 
-/// Of each texture whether surfaces shine by it.
-std::vector<bool> shining_textures(const Scene& scene) {
-    std::vector<bool> out(scene.textures.size(), false);
-    for (const Light& light : scene.lights)
-        if (const auto* area = std::get_if<AreaLight>(&light); area && area->texture) out[index(*area->texture)] = true;
+/// Of each image whether it is a colour of what surfaces reflect or let pass. The colour of a coat never adds energy,
+/// and numbers are clamped where they are shares.
+std::vector<bool> reflecting_images(const Scene& scene) {
+    std::vector<bool> out(scene.images.size(), false);
+    const auto mark = [&](TextureId id) {
+        if (const auto* image = std::get_if<ImageTexture>(&scene.textures[index(id)])) out[index(image->image)] = true;
+    };
     for (const Material& material : scene.materials)
-        if (const auto* m = std::get_if<OpenPbrMaterial>(&material); m && m->emission_color.texture)
-            out[index(*m->emission_color.texture)] = true;
+        each_texture(material, [&](TextureId id, TextureRole role, std::string_view what) {
+            if (role == TextureRole::color && what != "coat_color") each_factor(scene, id, mark);
+        });
     return out;
 }
 
 /// Image textures only: the environment counts its own. What shines may have any value.
 void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
-    const std::vector<bool> shines = shining_textures(scene);
-    std::vector<bool> used(scene.images.size(), false), reflects(scene.images.size(), false);
-    for (size_t i = 0; i < scene.textures.size(); ++i)
-        if (const auto* texture = std::get_if<ImageTexture>(&scene.textures[i])) {
-            used[index(texture->image)] = true;
-            if (!shines[i]) reflects[index(texture->image)] = true;
-        }
+    std::vector<bool> used(scene.images.size(), false);
+    for (const Texture& texture : scene.textures)
+        if (const auto* image = std::get_if<ImageTexture>(&texture)) used[index(image->image)] = true;
+    const std::vector<bool> reflects = reflecting_images(scene);
     for (size_t i = 0; i < used.size(); ++i) {
         if (!used[i]) continue;
+        std::string name = "image texture";
+        if (i < scene.names.images.size() && !scene.names.images[i].empty())
+            name += " " + escape_for_display(scene.names.images[i], 4096);
         if (const uint64_t bad = count_bad_texels(scene.images[i], false); bad > 0)
-            diagnostics.warn("image texture: texels that are not finite count as 0", {}, bad);
+            diagnostics.warn(name + ": texels that are not finite count as 0", {}, bad);
         if (reflects[i] && adds_energy(scene.images[i]))
-            diagnostics.warn("an image texture has values above 1: surfaces that add energy do not exist");
+            diagnostics.warn(name + ": values above 1: surfaces that add energy do not exist");
     }
 }
 

@@ -488,5 +488,12 @@ TEST(NativeScene, TexturesAreTurned) {
     EXPECT_EQ(std::get<CheckerTexture>(loaded.scene.textures[1]).rotation, 0);
 }
 
+TEST(NativeScene, WeightsAreClampedAndNoReflectance) {
+    for (const char* use : {R"({"type": "open_pbr", "fuzz_weight": {"type": "constant", "color": 3}})",
+                            R"({"type": "glass", "roughness": {"type": "constant", "color": 3}})"})
+        EXPECT_TRUE(
+            load_good(scene_with("\"materials\": {\"a\": " + std::string(use) + "}")).diagnostics.warnings().empty());
+}
+
 }  // namespace
 }  // namespace steradian::test

@@ -251,5 +251,40 @@ TEST(Texture, FormatsAndChannels) {
     EXPECT_EQ(count_bad_texels(u8, true), 0u);
 }
 
+/// One image, above 1, as each of these; the warnings.
+TEST(Texture, OnlyColoursOfWhatReflectsAddEnergy) {
+    const auto warnings = [](const Material& material, std::optional<Relief> relief = {}) {
+        Scene scene = grey(2, 2, {3, 3, 3, 3}, Wrap::repeat, Wrap::repeat);
+        scene.names.images = {"big.pfm"};
+        scene.materials.push_back(material);
+        if (relief) scene.reliefs.push_back(*relief);
+        Diagnostics diagnostics;
+        EXPECT_TRUE(make_shading_scene(std::move(scene), diagnostics).ok());
+        return diagnostics.warnings();
+    };
+    const TextureId big{0};
+    const auto pbr = [&](auto member) {
+        OpenPbrMaterial m;
+        (m.*member).texture = big;
+        return m;
+    };
+    const SchlickReflectance grey_metal{big, {1, 1, 1}};
+    for (const Material& m : std::vector<Material>{
+             DiffuseMaterial{big}, ConductorMaterial{grey_metal, {}, {1, 1, 1}}, DiffuseTransmissionMaterial{big, big},
+             pbr(&OpenPbrMaterial::base_color), pbr(&OpenPbrMaterial::transmission_color)}) {
+        const auto said = warnings(m);
+        ASSERT_EQ(said.size(), 1u) << m.index();
+        EXPECT_NE(said[0].message.find("image texture big.pfm: values above 1"), std::string::npos) << said[0].message;
+    }
+    GlassMaterial frosted;
+    frosted.roughness.texture = big;
+    for (const Material& m :
+         std::vector<Material>{frosted, pbr(&OpenPbrMaterial::geometry_opacity), pbr(&OpenPbrMaterial::fuzz_weight),
+                               pbr(&OpenPbrMaterial::thin_film_thickness), pbr(&OpenPbrMaterial::coat_color),
+                               pbr(&OpenPbrMaterial::geometry_tangent), pbr(&OpenPbrMaterial::emission_color)})
+        EXPECT_TRUE(warnings(m).empty()) << m.index();
+    EXPECT_TRUE(warnings(MirrorMaterial{}, Relief{MaterialId{0}, BumpMap{big}}).empty());
+}
+
 }  // namespace
 }  // namespace steradian

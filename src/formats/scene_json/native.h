@@ -30,8 +30,8 @@ private:
     TextureId read_texture(Value value, const std::string& name, bool numbers = false);
     TextureId read_image_texture(Value value, const std::string& name, bool numbers);
     /// What a texture is read for: images of numbers are linear by themselves, and only what reflects should not
-    /// exceed 1.
-    enum class TextureUse : uint8_t { reflection, emission, numbers };
+    /// exceed 1. Weights are those numbers that an image has in its own colour space; they are clamped.
+    enum class TextureUse : uint8_t { reflection, emission, weight, numbers };
     /// The name of a texture, or a texture; nothing for other values.
     std::optional<TextureId> find_texture(Value value, TextureUse use = TextureUse::reflection);
     /// A colour, the name of a texture, or a texture.

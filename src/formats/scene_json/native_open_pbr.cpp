@@ -10,7 +10,7 @@ constexpr Range kUnit{0, 1};
 FloatInput NativeLoader::read_input(ObjectReader& material, std::string_view key, FloatInput fallback) {
     const auto value = material.find(key);
     if (!value) return fallback;
-    if (const auto texture = find_texture(*value)) return {1, texture};
+    if (const auto texture = find_texture(*value, TextureUse::weight)) return {1, texture};
     return {json::read_number(source_, *value, quoted(key), kUnit)};
 }
 

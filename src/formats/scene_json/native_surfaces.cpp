@@ -139,7 +139,7 @@ Roughness NativeLoader::read_roughness(ObjectReader& material) {
     const std::string_view key = alpha ? "alpha" : "roughness";
     const std::optional<Value> value = alpha ? alpha : roughness;
     if (!value) return out;
-    out.texture = find_texture(*value);
+    out.texture = find_texture(*value, TextureUse::weight);
     out.value = out.texture ? Vec2{1, 1} : material.vec2_or(key, out.value, kUnit);
     return out;
 }

@@ -5,9 +5,9 @@
 
 #include "steradian/scene.h"
 
-namespace steradian::lint_detail {
+namespace steradian {
 
-enum class Role : uint8_t {
+enum class TextureRole : uint8_t {
     color,     ///< of what is reflected or passes
     emission,  ///< of what is sent
     number,    ///< a weight, a roughness, an opacity: the first channel in [0, 1]
@@ -21,22 +21,22 @@ enum class Role : uint8_t {
 template <class Visit>
 void each_texture(const Material& material, const Visit& visit) {
     const auto number = [&](const auto& input, std::string_view what) {
-        if (input.texture) visit(*input.texture, Role::number, what);
+        if (input.texture) visit(*input.texture, TextureRole::number, what);
     };
-    const auto color = [&](const ColorInput& input, std::string_view what, Role role = Role::color) {
+    const auto color = [&](const ColorInput& input, std::string_view what, TextureRole role = TextureRole::color) {
         if (input.texture) visit(*input.texture, role, what);
     };
     if (const auto* diffuse = std::get_if<DiffuseMaterial>(&material))
-        visit(diffuse->reflectance, Role::color, "reflectance");
+        visit(diffuse->reflectance, TextureRole::color, "reflectance");
     if (const auto* glass = std::get_if<GlassMaterial>(&material)) number(glass->roughness, "roughness");
     if (const auto* metal = std::get_if<ConductorMaterial>(&material)) {
         if (const auto* schlick = std::get_if<SchlickReflectance>(&metal->reflectance))
-            visit(schlick->normal, Role::color, "reflectance");
+            visit(schlick->normal, TextureRole::color, "reflectance");
         number(metal->roughness, "roughness");
     }
     if (const auto* sheet = std::get_if<DiffuseTransmissionMaterial>(&material)) {
-        visit(sheet->reflectance, Role::color, "reflectance");
-        visit(sheet->transmittance, Role::color, "transmittance");
+        visit(sheet->reflectance, TextureRole::color, "reflectance");
+        visit(sheet->transmittance, TextureRole::color, "transmittance");
     }
     if (const auto* mix = std::get_if<MixMaterial>(&material)) number(mix->weight, "weight");
     if (const auto* m = std::get_if<OpenPbrMaterial>(&material)) {
@@ -48,17 +48,21 @@ void each_texture(const Material& material, const Visit& visit) {
         number(m->fuzz_roughness, "fuzz_roughness"), number(m->coat_roughness, "coat_roughness");
         number(m->thin_film_weight, "thin_film_weight"), number(m->thin_film_thickness, "thin_film_thickness");
         number(m->specular_roughness_anisotropy, "specular_roughness_anisotropy");
-        if (m->geometry_tangent.texture) visit(*m->geometry_tangent.texture, Role::direction, "geometry_tangent");
-        if (m->geometry_coat_normal) visit(m->geometry_coat_normal->texture, Role::normal, "geometry_coat_normal");
-        color(m->coat_color, "coat_color"), color(m->emission_color, "emission_color", Role::emission);
+        if (m->geometry_tangent.texture)
+            visit(*m->geometry_tangent.texture, TextureRole::direction, "geometry_tangent");
+        if (m->geometry_coat_normal)
+            visit(m->geometry_coat_normal->texture, TextureRole::normal, "geometry_coat_normal");
+        color(m->coat_color, "coat_color"), color(m->emission_color, "emission_color", TextureRole::emission);
         number(m->geometry_opacity, "geometry_opacity");
     }
 }
 
 template <class Visit>
 void each_texture(const Relief& relief, const Visit& visit) {
-    if (const auto* normals = std::get_if<NormalMap>(&relief.map)) visit(normals->texture, Role::normal, "normal_map");
-    if (const auto* heights = std::get_if<BumpMap>(&relief.map)) visit(heights->texture, Role::height, "bump_map");
+    if (const auto* normals = std::get_if<NormalMap>(&relief.map))
+        visit(normals->texture, TextureRole::normal, "normal_map");
+    if (const auto* heights = std::get_if<BumpMap>(&relief.map))
+        visit(heights->texture, TextureRole::height, "bump_map");
 }
 
 /// The texture itself, or the two that it is a product of.
@@ -72,4 +76,4 @@ void each_factor(const Scene& scene, TextureId id, const Visit& visit) {
     }
 }
 
-}  // namespace steradian::lint_detail
+}  // namespace steradian
