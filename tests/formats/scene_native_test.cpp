@@ -459,6 +459,20 @@ TEST(NativeScene, NormalAndBumpMaps) {
     EXPECT_TRUE(std::holds_alternative<CheckerTexture>(scene.textures[index(bump.texture)]));
 }
 
+TEST(NativeScene, NormalMapsMayBeTexturesInPlace) {
+    const LoadedScene loaded = load_good(scene_with(R"("materials": {
+        "a": {"type": "diffuse", "reflectance": 0.5, "normal_map": {"type": "constant", "color": [0.5, 0.5, 1]}},
+        "b": {"type": "open_pbr", "geometry_coat_normal": {"type": "checkerboard"}}})"));
+    const Scene& s = loaded.scene;
+    ASSERT_EQ(s.reliefs.size(), 1u);
+    const auto& map = std::get<NormalMap>(s.reliefs[0].map);
+    EXPECT_EQ(std::get<ConstantTexture>(s.textures[index(map.texture)]).value, (Rgb{0.5f, 0.5f, 1}));
+    EXPECT_EQ(map.strength, 1);
+    const auto& coat = std::get<OpenPbrMaterial>(s.materials.at(1)).geometry_coat_normal;
+    ASSERT_TRUE(coat);
+    EXPECT_TRUE(std::holds_alternative<CheckerTexture>(s.textures[index(coat->texture)]));
+}
+
 TEST(NativeScene, MixesAndColoursOfVertices) {
     const LoadedScene loaded = load_good(scene_with(R"("textures": {"c": {"type": "vertex_color"}}, "materials": {
             "a": {"type": "diffuse", "reflectance": "c"}, "b": {"type": "mirror"},

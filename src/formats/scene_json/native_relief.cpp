@@ -40,7 +40,11 @@ TextureId NativeLoader::read_numbers(Value value, std::string_view what) {
 NormalMap NativeLoader::read_normal_map(Value value, std::string_view what) {
     static constexpr Range kStrength{0, 100};
     NormalMap out;
-    if (!value.is(Kind::object)) {
+    // A texture has a type, a map has none.
+    bool is_texture = !value.is(Kind::object);
+    if (!is_texture)
+        for (const Member member : value.members()) is_texture = is_texture || member.key == "type";
+    if (is_texture) {
         out.texture = read_numbers(value, what);
         return out;
     }
