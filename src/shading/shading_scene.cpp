@@ -351,9 +351,12 @@ void warn_about_texels(const Scene& scene, Diagnostics& diagnostics) {
         std::string name = "image texture";
         if (i < scene.names.images.size() && !scene.names.images[i].empty())
             name += " " + escape_for_display(scene.names.images[i], 4096);
-        if (const uint64_t bad = count_bad_texels(scene.images[i], false); bad > 0)
-            diagnostics.warn(name + ": texels that are not finite count as 0", {}, bad);
-        if (reflects[i] && adds_energy(scene.images[i]))
+        const uint64_t bad = count_bad_texels(scene.images[i], false);
+        if (bad > 0) diagnostics.warn(name + ": texels that are not finite count as 0", {}, bad);
+        if (!reflects[i]) continue;
+        if (const uint64_t negative = count_bad_texels(scene.images[i], true) - bad; negative > 0)
+            diagnostics.warn(name + ": texels below 0 count as 0", {}, negative);
+        if (adds_energy(scene.images[i]))
             diagnostics.warn(name + ": values above 1: surfaces that add energy do not exist");
     }
 }

@@ -286,5 +286,22 @@ TEST(Texture, OnlyColoursOfWhatReflectsAddEnergy) {
     EXPECT_TRUE(warnings(MirrorMaterial{}, Relief{MaterialId{0}, BumpMap{big}}).empty());
 }
 
+TEST(Texture, ColoursBelowZeroAreCounted) {
+    const auto warnings = [](const Material& material) {
+        Scene scene = grey(2, 2, {-0.5f, 0.5f, -0.1f, kInfinity}, Wrap::repeat, Wrap::repeat);
+        scene.materials.push_back(material);
+        Diagnostics diagnostics;
+        EXPECT_TRUE(make_shading_scene(std::move(scene), diagnostics).ok());
+        return diagnostics.warnings();
+    };
+    const auto of_color = warnings(DiffuseMaterial{TextureId{0}});
+    ASSERT_EQ(of_color.size(), 2u);
+    EXPECT_EQ(of_color[1].message, "image texture: texels below 0 count as 0");
+    EXPECT_EQ(of_color[1].count, 2u);
+    GlassMaterial frosted;
+    frosted.roughness.texture = TextureId{0};
+    EXPECT_EQ(warnings(frosted).size(), 1u);  // of the one that is not finite
+}
+
 }  // namespace
 }  // namespace steradian
