@@ -182,9 +182,11 @@ InstanceParts open_where_it_pays(const Placement& placement, uint64_t limit, con
         return sampled_cost(world, kernels, far.bounds);
     };
     InstanceParts opened = open_instances(whole, placement, built.levels, limit);
-    if (options.open == OpenInstances::automatic && !monitor.poll() &&
-        cost_over(level_over(opened)) > kWorthOpening * cost_over(far))
-        return whole;
+    if (options.open == OpenInstances::automatic) {
+        const Level near = level_over(opened);
+        if (monitor.poll()) return whole;  // then the levels are unfinished: no ray may look into them
+        if (cost_over(near) > kWorthOpening * cost_over(far)) return whole;
+    }
     built.far = std::move(far);
     return opened;
 }

@@ -244,6 +244,28 @@ TEST(Build, CancelledAtEveryQuestion) {
     }
 }
 
+/// Whether it pays to open instances is asked of levels that a cancelled build has not finished.
+TEST(Build, CancelledWhileOpeningInstancesIsTried) {
+    TestScene scene("bumpy spheres within each other");
+    scene.meshes.push_back(icosphere(4));
+    Random random(5);
+    for (Vec3& p : scene.meshes[0].positions) p = p * (1 + 0.3f * random.in_cube(1).x);
+    for (int i = 0; i < 16; ++i) scene.instances.push_back({0, translation(random.in_cube(1).x, 0, 0)});
+    with_threads(1, [&] {
+        for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+            int after = 0, asked = 0;
+            const auto build = [&] {
+                AccelOptions options;
+                options.layout = layout;
+                options.cancelled = [&] { return asked++ >= after; };
+                return Accel::build(scene.geometries(), scene.instances, options);
+            };
+            for (asked = 0; !build(); asked = 0) ASSERT_LT(++after, 1000);
+            EXPECT_GT(after, 20);
+        }
+    });
+}
+
 TEST(Build, SaysHowFarItIs) {
     const ThreadLimit limit(5);
     const TestScene scene = some_of_everything();
