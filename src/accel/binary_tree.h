@@ -69,7 +69,7 @@ inline constexpr size_t kOwnSourceGrain = 512;
 /// of nodes. The two children of a node begin where they share a line of the cache.
 class BinaryPool {
 public:
-    static constexpr uint32_t kRun = 64, kChunkBits = 10, kChunk = 1u << kChunkBits;
+    static constexpr uint32_t kRun = 64, kChunkBits = 8, kChunk = 1u << kChunkBits;
     /// There never are more, in a tree over so many primitives: nodes, and what the last runs of all sources waste.
     static constexpr size_t most_nodes(size_t primitives) { return 4 * primitives + 4 * size_t(kRun); }
 
@@ -94,7 +94,7 @@ public:
         explicit Source(BinaryPool& pool) : pool_(pool) {}
         /// The first of two.
         uint32_t next_two() {
-            if (left_ == 0) next_ = pool_.take_run(), left_ = kRun;
+            if (left_ == 0) left_ = pool_.take(next_);
             left_ -= 2;
             return (next_ += 2) - 2;
         }
@@ -104,9 +104,28 @@ public:
         uint32_t next_ = 0, left_ = 0;
     };
 
+    /// What is below a node becomes what sources take first, where children are still beside each other: the node is to
+    /// be divided anew. Not while sources take nodes.
+    void give_back_below(uint32_t index) {
+        const BinaryNode node = (*this)[index];
+        if (node.is_leaf()) return;
+        for (const int which : {0, 1}) give_back_below(node.child(which));
+        if (node.child(1) != node.child(0) + 1) return;
+        (*this)[node.child(0)].second = spare_;
+        spare_ = node.child(0);
+    }
+
 private:
-    uint32_t take_run() {
+    static constexpr uint32_t kNone = ~0u;
+
+    /// So many nodes from `first` on.
+    uint32_t take(uint32_t& first) {
         const std::lock_guard lock(mutex_);
+        if (spare_ == kNone) return first = take_run(), kRun;
+        first = spare_, spare_ = (*this)[first].second;
+        return 2;
+    }
+    uint32_t take_run() {
         const uint32_t run = used_;
         if (run % kChunk == 0) {
             memory_.emplace_back(std::min<size_t>(kChunk, most_ - run));
@@ -121,6 +140,7 @@ private:
     std::deque<LargeArray<BinaryNode>> memory_;
     std::mutex mutex_;
     uint32_t used_ = 0;
+    uint32_t spare_ = kNone;  ///< the first of two nodes given back; its `second` says which two are next
 };
 
 /// What the leaves of a tree refer to, first `own` and then `moved`: leaves with parts of split boxes have all of

@@ -110,6 +110,8 @@ RangeBounds range_bounds(std::span<const BuildPrimitive> primitives) {
 std::optional<SahSplit> find_sah_split(const Range& range, const RangeBounds& bounds, ItemKind kind) {
     const Binning binning(bounds, range.size());
     const Area half_area_of(bounds);
+    const float area = half_area_of(bounds.box);
+    if (!(area > 0)) return std::nullopt;
     Bins bins(binning.count());
     count_all(range.own, binning, bins);
     count_all(range.added, binning, bins);
@@ -134,10 +136,7 @@ std::optional<SahSplit> find_sah_split(const Range& range, const RangeBounds& bo
             if (!best || cost < best->cost) best = SahSplit{cost, axis, i};
         }
     }
-    if (best) {
-        const float area = half_area_of(bounds.box);
-        best->cost = area > 0 ? best->cost / area : 0;
-    }
+    if (best) best->cost /= area;
     return best;
 }
 

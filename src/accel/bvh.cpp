@@ -22,6 +22,9 @@ bool same_centroid(const RangeBounds& bounds) {
     return box.lo == box.hi;
 }
 
+/// Points of a line, say: the heuristic knows nothing of them, and no ray can tell.
+bool no_surface(const RangeBounds& bounds) { return !(Area(bounds)(bounds.box) > 0); }
+
 class BinaryBuilder {
 public:
     using Added = std::vector<BuildPrimitive>;
@@ -121,7 +124,7 @@ private:
             kind = *only;
         }
         const size_t small = kind == ItemKind::block ? kBlock : 1;
-        if (last || range.size() <= small || (few && same_centroid(bounds))) return {};
+        if (last || range.size() <= small || (few && (same_centroid(bounds) || no_surface(bounds)))) return {};
         if (options_.builder == BvhBuilder::median) return split_median(range, bounds);
         // A balanced tree only just fits below: no more room for lopsided splits.
         const auto levels = static_cast<uint32_t>(std::bit_width((range.size() - 1) / small));

@@ -8,8 +8,8 @@
 namespace steradian {
 namespace {
 
-/// Nodes whose blocks are written together, at first apart from the others.
-constexpr size_t kChunk = 256;
+/// Nodes whose blocks are written together, at first apart from the others: few, as their array grows by doubling.
+constexpr size_t kChunk = 32;
 constexpr size_t kMaxTriangles = ChildRef::kMaxRun * kBlock;  ///< of a leaf
 
 bool holds_blocks(uint32_t ref) { return ChildRef::is_leaf(ref) && ChildRef::kind(ref) == ItemKind::block; }

@@ -1,5 +1,7 @@
 #include "accel/fuller.h"
 
+#include <utility>
+
 #include "accel/tree_bytes.h"
 
 namespace steradian {
@@ -56,11 +58,34 @@ private:
         return true;
     }
     void sort(uint32_t root) {
+        if (primitives_.moved.empty()) return sort_in_place(root);
         LargeArray<BuildPrimitive> sorted;
         sorted.reserve(primitives_.size());
         take(root, sorted);
         primitives_.own.swap(sorted);
         std::deque<BuildPrimitive>().swap(primitives_.moved);
+    }
+    /// By where each goes: a copy of all would be half of what is held then.
+    void sort_in_place(uint32_t root) {
+        LargeArray<BuildPrimitive>& own = primitives_.own;
+        LargeArray<uint32_t> to(own.size());
+        uint32_t next = 0;
+        find_places(root, next, to);
+        for (uint32_t i = 0; i < to.size(); ++i)
+            while (to[i] != i) {
+                const uint32_t place = to[i];
+                std::swap(own[i], own[place]), std::swap(to[i], to[place]);
+            }
+    }
+    void find_places(uint32_t index, uint32_t& next, LargeArray<uint32_t>& to) {
+        BinaryNode& node = pool_[index];
+        if (!node.is_leaf()) {
+            for (const int which : {0, 1}) find_places(node.child(which), next, to);
+            return;
+        }
+        const uint32_t first = next;
+        for (uint32_t i = node.begin(); i < node.end(); ++i) to[i] = next++;
+        node.set_leaf(first, next, node.kind());
     }
     void take(uint32_t index, LargeArray<BuildPrimitive>& sorted) {
         BinaryNode& node = pool_[index];
@@ -110,6 +135,7 @@ private:
         if (node.is_leaf() || monitor_.poll()) return;
         if (marked_[index]) {
             const Subtree all{pool_[edge(index, 0)].begin(), pool_[edge(index, 1)].end(), depth};
+            pool_.give_back_below(index);
             return divide(primitives_.own, all, options_, monitor_, pool_, source_, index);
         }
         for (const int which : {0, 1}) fill(node.child(which), depth + (node.counted() ? 1 : 0));

@@ -7,6 +7,8 @@
 
 #include "accel/binary_tree.h"
 #include "accel/children.h"
+#include "accel/compact_block.h"
+#include "accel/compact_node.h"
 #include "accel/fuller.h"
 #include "accel/tree_bytes.h"
 #include "base/parallel.h"
@@ -95,11 +97,18 @@ public:
     /// Another tree will be chosen.
     void forget() { LargeArray<Choice>().swap(choice_); }
 
-    void run(uint32_t root) {
+    void run(uint32_t root, BvhLayout layout) {
         // What was moved is reported with what it was moved from.
         const uint64_t work = primitives_.own.size();
         monitor_.advance(work);
+        const bool again = layout == BvhLayout::compact && totals_.runs == 0 && holds_much();
+        if (again) forget();
         take_ids(totals_.runs > 0);
+        if (again) {
+            choice_.resize(pool_.size());
+            choose(root, cost_of_byte_);
+            if (monitor_.poll()) return;
+        }
         out_.nodes.resize(totals_.nodes);
         out_.blocks.resize(size_t(totals_.blocks) * kBlock);
         out_.entries.resize(totals_.entries);
@@ -232,6 +241,17 @@ private:
         return {nodes, blocks ? items : 0, blocks ? 0 : items, depth, nodes, blocks ? primitives : 0, 1};
     }
 
+    /// Whether ids beside everything else might be more than thrice the result, which happens where triangles are
+    /// points: then it is decided once more, when the boxes are gone. Blocks take least where all their triangles have
+    /// the same vertices.
+    bool holds_much() const {
+        const uint64_t now = primitives_.size() * (sizeof(BuildPrimitive) + sizeof(uint32_t)) +
+                             pool_.size() * (sizeof(BinaryNode) + sizeof(Choice));
+        const uint64_t least =
+            totals_.blocks * sizeof(uint64_t) * uint64_t(CompactBlock::units_for(CompactBlock::kMinVertices, false)) +
+            totals_.entries * sizeof(LeafEntry) + totals_.nodes * sizeof(CompactNode);
+        return now > 3 * least;
+    }
     /// Of the primitives only their ids are needed from now on, and boxes where there are nodes over runs.
     void take_ids(bool boxes_too) {
         const size_t own = primitives_.own.size();
@@ -355,7 +375,7 @@ void gather(BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, const B
         make_fuller(pool, root, primitives, options, monitor);
         if (!monitor.poll()) gatherer.choose(root);
     }
-    if (!monitor.poll()) gatherer.run(root);
+    if (!monitor.poll()) gatherer.run(root, options.layout);
 }
 
 }  // namespace steradian

@@ -7,6 +7,8 @@
 #include "accel/reinsert.h"
 
 #include <algorithm>
+#include <deque>
+#include <mutex>
 
 #include "base/parallel.h"
 
@@ -196,14 +198,19 @@ private:
     LargeArray<uint8_t> height_;
 };
 
-/// The moves that gain something in the tree as it is, the best first.
-std::vector<Move> find_moves(const Tree& tree, BuildMonitor& monitor) {
-    std::vector<Move> moves(tree.size());
-    parallel_for(moves.size(), kGrain, [&](size_t begin, size_t end) {
+/// The moves that gain something in the tree as it is, the best first. Most nodes are where they should be, so there is
+/// no room for all of them; and none for an array that grows by doubling.
+std::deque<Move> find_moves(const Tree& tree, BuildMonitor& monitor) {
+    std::deque<Move> moves;
+    std::mutex mutex;
+    parallel_for(tree.size(), kGrain, [&](size_t begin, size_t end) {
         if (monitor.poll()) return;
-        for (size_t i = begin; i < end; ++i) moves[i] = tree.best_move(static_cast<uint32_t>(i));
+        std::vector<Move> found;
+        for (size_t i = begin; i < end; ++i)
+            if (const Move move = tree.best_move(static_cast<uint32_t>(i)); move.gain > 0) found.push_back(move);
+        const std::lock_guard lock(mutex);
+        moves.insert(moves.end(), found.begin(), found.end());
     });
-    moves.erase(std::remove_if(moves.begin(), moves.end(), [](const Move& m) { return !(m.gain > 0); }), moves.end());
     std::sort(moves.begin(), moves.end(),
               [](const Move& a, const Move& b) { return a.gain != b.gain ? a.gain > b.gain : a.rank < b.rank; });
     return moves;
@@ -215,7 +222,7 @@ void reinsert(BinaryPool& nodes, uint32_t root, uint32_t max_depth, BuildMonitor
     Tree tree(nodes, root, max_depth);
     uint64_t work_left = work;
     for (int pass = 0; pass < kPasses && tree.has_room(); ++pass) {
-        const std::vector<Move> moves = find_moves(tree, monitor);
+        const std::deque<Move> moves = find_moves(tree, monitor);
         monitor.advance(work / kPasses);
         work_left -= work / kPasses;
         for (size_t i = 0; i < moves.size(); ++i) {

@@ -114,7 +114,8 @@ struct SahSplit {
     int axis = 0;
     uint32_t bin = 0;  ///< the first one on the right
 };
-/// Nothing when all centroids coincide. All primitives cost what those of `kind` do.
+/// Nothing when all centroids coincide, or all boxes lie in a line, which has no surface and so no cost. All primitives
+/// cost what those of `kind` do.
 std::optional<SahSplit> find_sah_split(const Range& range, const RangeBounds& bounds, ItemKind kind);
 Halves apply_sah_split(const Range& range, const RangeBounds& bounds, const SahSplit& split);
 

@@ -151,6 +151,45 @@ std::vector<World> hostile_worlds(int n) {
     return all;
 }
 
+/// Triangles that are points or lie in a line, several in the same place: of all triangles they take the fewest bytes
+/// in the compact layout, and no fewer than others before they are packed.
+std::vector<World> worlds_of_points(int n) {
+    std::vector<World> all;
+    const auto add = [&](const std::string& name, const auto& triangle) {
+        World w{name + ", " + std::to_string(n), {{}}};
+        for (int i = 0; i < n; ++i) triangle(w.meshes[0], i);
+        w.ordinary = false;
+        all.push_back(std::move(w));
+    };
+    const auto add_points = [&](const std::string& name, const auto& place) {
+        add(name, [&](Mesh& mesh, int i) {
+            const Vec3 p = place(i);
+            mesh.add(p, p, p);
+        });
+    };
+    Random random(16);
+    Vec3 at{0, 0, 0};
+    add_points("points farther and farther", [](int i) { return Vec3{float(std::pow(1.001, i)), 0, 0}; });
+    for (const int each : {1, 2, 3, 4, 5, 9}) {
+        const std::string of = std::to_string(each) + " in each place of ";
+        add_points(of + "a line", [&](int i) { return Vec3{float(i / each), 0, 0}; });
+        add_points(of + "a circle", [&](int i) {
+            const double angle = 0.01 * (i / each);
+            return Vec3{float(std::cos(angle)), float(std::sin(angle)), 0};
+        });
+        add_points(of + "a cube", [&](int i) { return at = i % each ? at : in_cube(random, 1); });
+        add(of + "a cube, with a surface", [&](Mesh& mesh, int i) {
+            if (i % each == 0) at = in_cube(random, 1);
+            mesh.add(at, at + Vec3{0.01f, 0, 0}, at + Vec3{0, 0.01f, 0});
+        });
+        add(of + "a line, without a surface", [&](Mesh& mesh, int i) {
+            const auto x = static_cast<float>(i / each);
+            mesh.add({x, 0, 0}, {x + 1, 0, 0}, {x + 2, 0, 0});
+        });
+    }
+    return all;
+}
+
 std::vector<World> shape_worlds(int n) {
     Random random(4);
     World spheres{"spheres"}, rectangles{"rectangles"}, disks{"disks"}, same_spheres{"coincident spheres"},
@@ -285,6 +324,10 @@ TEST_F(BuildMemory, OfTriangles) {
 }
 TEST_F(BuildMemory, OfHostileTriangles) {
     for (const World& world : hostile_worlds(kCount)) expect_bounded_in_all_ways(world, kLittle);
+}
+TEST_F(BuildMemory, OfPoints) {
+    for (const int n : {500, 2000, kCount})
+        for (const World& world : worlds_of_points(n)) expect_bounded_in_all_ways(world, kLittle);
 }
 /// There are trees that would take more, and are made to take less: so the bound is there for something, and reached.
 TEST_F(BuildMemory, ComesCloseToItsBoundWhereItIsKept) {
