@@ -459,6 +459,8 @@ RayVisits Accel::visits(const Ray& ray) const noexcept {
 
 Accel::Bounds Accel::bounds() const noexcept { return {data_->built.bounds.lo, data_->built.bounds.hi}; }
 
+size_t Accel::object_bytes() noexcept { return sizeof(Data); }
+
 const AccelStatistics& Accel::statistics() const noexcept { return data_->statistics; }
 
 }  // namespace steradian

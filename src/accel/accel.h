@@ -140,6 +140,8 @@ public:
     };
     Bounds bounds() const noexcept;
     const AccelStatistics& statistics() const noexcept;
+    /// What AccelStatistics::bytes counts where there is nothing in it.
+    static size_t object_bytes() noexcept;
 
 private:
     struct Data;

@@ -133,7 +133,8 @@ BuildMemory all_levels(std::span<const Geometry> geometries, std::span<const Geo
                                           instances.size() * (sizeof(std::optional<Vec3>) + sizeof(void*) +
                                                               kGrowing * (sizeof(LevelPart) + sizeof(double)))
                                     : 0;
-    BuildMemory all{lists, lists + beside};
+    const uint64_t object = Accel::object_bytes();
+    BuildMemory all{object + lists, object + lists + beside};
     const auto add = [&](const BuildMemory& level, uint64_t more) {
         all.peak = std::max(all.peak, all.result + beside + more + level.peak);
         all.result += level.result;

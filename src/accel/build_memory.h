@@ -17,8 +17,9 @@ struct BuildMemory {
 /// What Accel::build takes at most for these, on any number of workers, whatever the coordinates are; known from
 /// numbers alone. The hierarchy takes 60 bytes a triangle at most in either layout (90 with BvhBuilder::high_quality,
 /// which may have half as many again in its leaves), 96 (in the compact layout 64) for every shape and every instance
-/// that is not in place, and half a kilobyte: builders keep within these, see tree_bytes.h. Before nodes are gathered
-/// there may be a leaf for every primitive, so `peak` is further off what ordinary meshes take: up to 3.5 times.
+/// that is not in place, half a kilobyte, and what the object is without any: builders keep within these, see
+/// tree_bytes.h. Before nodes are gathered there may be a leaf for every primitive, so `peak` is further off what
+/// ordinary meshes take: up to 3.5 times.
 BuildMemory build_memory(std::span<const Geometry> geometries, std::span<const GeometryInstance> instances,
                          const AccelOptions& options);
 

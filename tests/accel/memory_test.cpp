@@ -254,8 +254,10 @@ World one_of(const std::string& what) {
 /// finding out takes whether instances are to be opened (65536 items of about 180 bytes), where that may be, and
 /// otherwise histograms, bins and chunks.
 constexpr int64_t kMostBeside = 2, kLittle = 24 << 10, kTrial = 12 << 20;
-/// The object itself, and what the counting allocator rounds up.
-constexpr int64_t kLittleHeld = 2 << 10;
+/// What the allocator rounds up: so much for each of the arrays that there are at most.
+constexpr int64_t kRoundedUp = 80, kArrays = 9, kArraysOfLevel = 3;
+/// Larger arrays are rounded up to pages.
+constexpr int64_t kWithoutPages = 64 << 10;
 /// How far above what is held the bounds are at most, for what is ordinary: of the result, and of the peak, in the full
 /// layout; of blocks that share vertices they know nothing. And how far off is what is expected.
 constexpr double kResultSlack = 1.35, kPeakSlack = 3.5, kHighQualitySlack = 2, kCompactSlack = 2;
@@ -285,13 +287,19 @@ double expect_bounded(const World& world, const AccelOptions& options, int64_t c
     EXPECT_TRUE(accel) << what;
     if (!accel) return 0;
     EXPECT_LE(use.peak - use.held, kMostBeside * use.held + constant) << what << " holds " << use.held;
-    EXPECT_LE(use.held, int64_t(bound.result) + kLittleHeld) << what;
+    const auto bytes = static_cast<int64_t>(accel->statistics().bytes);
+    EXPECT_LE(bytes, int64_t(bound.result)) << what;
+    const auto levels = static_cast<int64_t>(geometries.size()) + 2;
+    EXPECT_GE(use.held, bytes) << what;
+    if (bytes < kWithoutPages) {
+        EXPECT_LE(use.held, bytes + (kArrays + kArraysOfLevel * levels) * kRoundedUp) << what;
+    }
     EXPECT_LE(use.peak, int64_t(bound.peak)) << what;
     if (accel->statistics().primitives >= 1000 && world.ordinary) {
         expect_tight(bound, use, options, what);
         expect_expected(expected, use, what);
     }
-    return double(use.held) / double(accel->statistics().primitives);
+    return double(use.held) / std::max(1.0, double(accel->statistics().primitives));
 }
 
 void expect_bounded_in_all_ways(const World& world, int64_t constant) {
@@ -358,6 +366,27 @@ TEST_F(BuildMemory, OfManyPartsOfInstances) {
 TEST_F(BuildMemory, OfOneOfEach) {
     for (const char* what : {"triangle", "sphere", "rectangle", "disk", "instance"})
         expect_bounded_in_all_ways(one_of(what), kLittle);
+}
+TEST_F(BuildMemory, OfNothing) {
+    World nothing{"nothing"}, unused = one_of("triangle");
+    nothing.instances.clear(), unused.instances.clear();
+    unused.name = "a triangle without an instance";
+    for (const World& world : {nothing, World{"an empty mesh", {{}}}, unused})
+        expect_bounded_in_all_ways(world, kLittle);
+}
+/// Lists grow by doubling: as many of each as take most.
+TEST_F(BuildMemory, OfManyGeometriesOfOnePrimitive) {
+    for (const int count : {2, 3, 5, 9, 33, 65}) {
+        World world{std::to_string(count) + " triangles and spheres",
+                    std::vector<Mesh>(size_t(count), soup(1, 1, 7)),
+                    {{{1, 2, 3}, 1}}};
+        world.instances.clear();
+        for (int i = 0; i <= count; ++i) world.instances.push_back({uint32_t(i), {}});
+        expect_bounded_in_all_ways(world, kLittle);
+        for (GeometryInstance& i : world.instances) i.world_from_object = rotation_degrees(30, {1, 2, 3});
+        world.name += ", turned", world.open = OpenInstances::never;
+        expect_bounded_in_all_ways(world, kLittle);
+    }
 }
 
 }  // namespace
