@@ -229,6 +229,7 @@ Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometr
     if (options.layout == BvhLayout::compact) {
         const auto triangle = [&](uint32_t id) { return triangle_of(geometries, parts, id); };
         compact = make_compact(bvh, triangle, monitor, work);
+        if (monitor.poll()) return {};  // not the nodes of the other layout, which kernels would take for theirs
     }
     Level level = fill_level(std::move(bvh), geometries, parts, instances);
     level.compact = std::move(compact);

@@ -63,8 +63,8 @@ struct InstanceIds {
     std::span<const InstancePart> parts;
 };
 
-/// `parts` are ascending and say whose the ids of blocks and shapes are. Unfinished when cancelled. Takes the
-/// primitives.
+/// `parts` are ascending and say whose the ids of blocks and shapes are. Empty when cancelled, as rays may look into
+/// any level that there is. Takes the primitives.
 Level build_level(LargeArray<BuildPrimitive> primitives, std::span<const Geometry> geometries,
                   std::span<const LevelPart> parts, const InstanceIds& instances, const BvhOptions& options,
                   BuildMonitor& monitor);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "accel/bvh.h"
+#include "accel/geometry.h"
 #include "accel/wide_node.h"
 #include "base/parallel.h"
 #include "brute_force.h"
@@ -244,24 +245,33 @@ TEST(Build, CancelledAtEveryQuestion) {
     }
 }
 
-/// Whether it pays to open instances is asked of levels that a cancelled build has not finished.
-TEST(Build, CancelledWhileOpeningInstancesIsTried) {
-    TestScene scene("bumpy spheres within each other");
+/// Whether it pays to open instances is asked of levels by rays, and kernels look into whatever nodes there are.
+TEST(Build, ACancelledLevelIsEmpty) {
+    TestScene scene("a sphere");
     scene.meshes.push_back(icosphere(4));
-    Random random(5);
-    for (Vec3& p : scene.meshes[0].positions) p = p * (1 + 0.3f * random.in_cube(1).x);
-    for (int i = 0; i < 16; ++i) scene.instances.push_back({0, translation(random.in_cube(1).x, 0, 0)});
+    const std::vector<Geometry> geometries = scene.geometries();
+    const LevelPart part{0, kNoHit, 0};
     with_threads(1, [&] {
-        for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
-            int after = 0, asked = 0;
-            const auto build = [&] {
-                AccelOptions options;
-                options.layout = layout;
-                options.cancelled = [&] { return asked++ >= after; };
-                return Accel::build(scene.geometries(), scene.instances, options);
-            };
-            for (asked = 0; !build(); asked = 0) ASSERT_LT(++after, 1000);
-            EXPECT_GT(after, 20);
+        for (const Way& way : kWays) {
+            bool cancelled = true;
+            for (int after = 0; cancelled; ++after) {
+                ASSERT_LT(after, 1000);
+                LargeArray<BuildPrimitive> primitives;
+                ASSERT_TRUE(append_primitives(geometries[0], 0, 0, primitives));
+                int asked = 0;
+                BuildMonitor monitor([&] { return asked++ >= after; });
+                BvhOptions options;
+                options.builder = way.builder, options.layout = way.layout;
+                const Level level = build_level(std::move(primitives), geometries, {&part, 1}, {}, options, monitor);
+                cancelled = asked > after;
+                const bool compact = way.layout == BvhLayout::compact;
+                EXPECT_EQ(level.nodes.empty(), cancelled || compact) << after;
+                EXPECT_EQ(level.compact.nodes.empty(), cancelled || !compact) << after;
+                EXPECT_EQ(level.view().nodes == nullptr, cancelled) << after;
+                if (!cancelled) {
+                    EXPECT_GT(after, compact ? 10 : 3);
+                }
+            }
         }
     });
 }
