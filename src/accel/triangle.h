@@ -45,10 +45,12 @@ struct TriangleRay {
         constexpr int kAfter[] = {1, 2, 0, 1};
         const int z = dominant_axis(ray.d);
         axis[0] = kAfter[z], axis[1] = kAfter[z + 1], axis[2] = z;
-        for (int i = 0; i < 3; ++i) o[i] = ray.o[axis[i]];
-        d_z = ray.d[z];
-        shear_x = ray.d[axis[0]] / d_z;
-        shear_y = ray.d[axis[1]] / d_z;
+        // From memory: Vec3's own way to a component that is not known beforehand is to guess it.
+        const float *const from = &ray.o.x, *const towards = &ray.d.x;
+        for (int i = 0; i < 3; ++i) o[i] = from[axis[i]];
+        d_z = towards[z];
+        shear_x = towards[axis[0]] / d_z;
+        shear_y = towards[axis[1]] / d_z;
     }
 };
 

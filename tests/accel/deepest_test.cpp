@@ -4,6 +4,8 @@
 #include "accel/compact.h"
 #include "accel/kernels/kernels.h"
 #include "brute_force.h"
+#include "options.h"
+#include "support/support.h"
 
 namespace steradian::test {
 namespace {
@@ -157,6 +159,36 @@ TEST(Deepest, StacksHoldBothLevels) {
                 ASSERT_TRUE(same_bits(hit, k < all.size() ? all[k] : Hit{})) << k;
             }
         }
+}
+
+/// Sheets behind each other, between whose corners rays pass: they meet every box, and nothing. More nodes than may
+/// wait for their memory, in the streams of any hits, lie on their stacks then.
+TEST(Deepest, EverythingIsVisited) {
+    TestScene scene("sheets");
+    TriangleMesh mesh;
+    const int sheets = by_tier(20'000, 200'000);
+    for (int i = 0; i < sheets; ++i) {
+        const float z = static_cast<float>(i) / static_cast<float>(sheets);
+        mesh.add({0, 0, z}, {1, 0, z}, {0, 1, z});
+    }
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances = {{0, {}}};
+    // Of each octant that they can come from as many as a stream has, and a few more; every fourth meets the sheets.
+    std::vector<Ray> rays;
+    std::vector<uint8_t> expected;
+    for (int i = 0; i < 300; ++i) {
+        const float side = i % 2 ? 1.0f : -1.0f, at = 0.8f + 0.0005f * static_cast<float>(i % 100);
+        const bool blocked = i % 4 == 3;
+        rays.push_back({{blocked ? 0.1f : at, at, side * 2}, 0, {0, 0, -side}, kInfinity});
+        expected.push_back(blocked);
+    }
+    for (const AccelOptions& options : all_options()) {
+        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+        ASSERT_TRUE(accel);
+        std::vector<uint8_t> occluded(rays.size());
+        accel->occluded(rays, occluded);
+        EXPECT_EQ(occluded, expected);
+    }
 }
 
 }  // namespace

@@ -342,13 +342,20 @@ TEST(Oracle, AnyNumberOfRays) {
     TestScene scene("sphere");
     scene.meshes.push_back(icosphere(3));
     scene.finish(1);
-    const std::vector<Ray> rays = hard_rays(scene, 100, 5);
+    const std::vector<Ray> rays = hard_rays(scene, 4100, 5);
+    std::vector<size_t> counts;
+    for (size_t count = 0; count <= 200; ++count) counts.push_back(count);
+    for (size_t count = 4090; count <= rays.size(); ++count) counts.push_back(count);
     for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
         AccelOptions options;
         options.layout = layout;
         const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
         ASSERT_TRUE(accel);
-        for (size_t count = 0; count <= rays.size(); ++count)
+        std::vector<Hit> alone(rays.size());
+        std::vector<uint8_t> occluded_alone(rays.size());
+        for (size_t i = 0; i < rays.size(); ++i)
+            alone[i] = accel->intersect(rays[i]), occluded_alone[i] = accel->occluded(rays[i]);
+        for (const size_t count : counts)
             for (const RayKind kind : {RayKind::incoherent, RayKind::coherent}) {
                 const Hit untouched{1, 2, 3, 4, 5};
                 std::vector<Hit> hits(rays.size() + 1, untouched);
@@ -356,8 +363,8 @@ TEST(Oracle, AnyNumberOfRays) {
                 accel->intersect(std::span(rays).first(count), std::span(hits).first(count), kind);
                 accel->occluded(std::span(rays).first(count), std::span(occluded).first(count), kind);
                 for (size_t i = 0; i < count; ++i) {
-                    ASSERT_TRUE(same_bits(hits[i], accel->intersect(rays[i]))) << count << " rays, ray " << i;
-                    ASSERT_EQ(occluded[i], accel->occluded(rays[i]));
+                    ASSERT_TRUE(same_bits(hits[i], alone[i])) << count << " rays, ray " << i;
+                    ASSERT_EQ(occluded[i], occluded_alone[i]) << count << " rays, ray " << i;
                 }
                 ASSERT_TRUE(same_bits(hits[count], untouched));
                 ASSERT_EQ(occluded[count], 7);

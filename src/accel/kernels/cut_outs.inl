@@ -1,4 +1,4 @@
-// What callers call where some primitives are cut-outs. Included after kernel.inl.
+// What callers call where some primitives are cut-outs. Included after stream.inl.
 
 void occluded_or_cut_out(const World& world, const Ray* rays, uint8_t* result, size_t count) noexcept {
     if (count == 1) {
@@ -7,5 +7,5 @@ void occluded_or_cut_out(const World& world, const Ray* rays, uint8_t* result, s
         *result = occlusion(hit);
         return;
     }
-    trace<Mode::opaque>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
+    trace_any<Mode::opaque>(world, rays, result, count);
 }

@@ -1,4 +1,4 @@
-// What callers of the kernels call, but for coherent rays and cut-outs. Included after kernel.inl.
+// What callers of the kernels call, but for coherent rays and cut-outs. Included after stream.inl.
 
 void intersect(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
     if (count == 1) {
@@ -14,7 +14,7 @@ void occluded(const World& world, const Ray* rays, uint8_t* result, size_t count
         *result = hit.found();
         return;
     }
-    trace<Mode::any>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = hit.found(); });
+    trace_any<Mode::any>(world, rays, result, count);
 }
 void next_hit(const World& world, const Ray* rays, const Hit* after, Hit* hits, size_t count) noexcept {
     if (count == 1) {

@@ -29,6 +29,52 @@ inline void transpose(const float* const* rows, float* columns) {
         for (int column = 0; column < 8; ++column) columns[16 * column + row] = rows[row][column];
 }
 
+/// Eight words.
+struct Words8 {
+    uint32_t v[kWidth];
+    static Words8 none() { return {}; }
+    static Words8 load(const uint32_t* p) {
+        Words8 a;
+        for (uint32_t i = 0; i < kWidth; ++i) a.v[i] = p[i];
+        return a;
+    }
+    /// Sets a bit where a <= b.
+    void set_where_at_most(const Float8& a, const Float8& b, uint32_t bit) {
+        const uint32_t where = at_most(a, b);
+        for (uint32_t i = 0; i < kWidth; ++i) v[i] |= (where >> i & 1) << bit;
+    }
+    /// Those whose bits are set, 0 in the place of others.
+    Words8 only(uint32_t lanes) const {
+        Words8 a;
+        for (uint32_t i = 0; i < kWidth; ++i) a.v[i] = lanes >> i & 1 ? v[i] : 0;
+        return a;
+    }
+    /// A bit for each that is not 0.
+    uint32_t some() const {
+        uint32_t bits = 0;
+        for (uint32_t i = 0; i < kWidth; ++i) bits |= uint32_t(v[i] != 0) << i;
+        return bits;
+    }
+    /// Those whose bits are set, one after the other. Writes eight.
+    void pack(uint32_t lanes, uint32_t* to) const {
+        for (uint32_t i = 0, count = 0; i < kWidth; ++i) {
+            to[count] = v[i];
+            count += lanes >> i & 1;
+        }
+    }
+};
+inline Words8 operator|(const Words8& a, const Words8& b) {
+    Words8 c;
+    for (uint32_t i = 0; i < kWidth; ++i) c.v[i] = a.v[i] | b.v[i];
+    return c;
+}
+/// A bit for each whose highest bit is set.
+inline uint32_t top_bits(const Words8& a) {
+    uint32_t bits = 0;
+    for (uint32_t i = 0; i < kWidth; ++i) bits |= (a.v[i] >> 31) << i;
+    return bits;
+}
+
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
 inline uint32_t ordered_at_most(Float8 in, Float8 out, const WideNode& node, uint32_t octant_shift) {
     const uint32_t met = at_most(in, out);

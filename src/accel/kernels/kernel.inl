@@ -24,24 +24,26 @@ inline constexpr uint32_t kStackSize = kMaxParted + 2 * (kWidth - 1) * kMaxNodeL
 /// Not references of children: the end of an instance, the end of everything, and of the first of two upper levels.
 inline constexpr uint32_t kLeaveInstance = 0xffffffffu, kFinished = 0xfffffffeu, kEnterFar = 0xfffffffdu;
 
-/// A ray on its way.
-struct alignas(64) Flight {
-    // What the slab test needs, in the current space.
+/// A ray in the space of a level, what has been found and what is still sought: all that leaves need of it.
+struct alignas(64) Query {
     SlabRay slab;
-    uint64_t near_plane[3], far_plane[3];  ///< where in a node the planes are that come first and last, in bytes
-    uint32_t octant_shift;
     float start, limit;  ///< boxes outside of it cannot hold what is sought
-    uint32_t next;       ///< the child to look at next
-    uint32_t depth;      ///< of the stack
-    LevelView level;
-    const LevelView* upper;  ///< World::upper or far
-
+    float tmin;
+    uint32_t instance;         ///< whose level this is; kNoHit on the upper level
+    Interval world;            ///< of the instance along the world's ray; the whole line where it is not transformed
     TriangleRay triangle_ray;  ///< where the level has triangles
     Hit best, after;
-    float tmin;
-    uint32_t instance;  ///< whose level this is; kNoHit on the upper level
-    Interval world;     ///< of the instance along the world's ray; the whole line where it is not transformed
-    uint32_t index;     ///< of the ray in its batch
+};
+
+/// A ray on its way.
+struct Flight : Query {
+    uint64_t near_plane[3], far_plane[3];  ///< where in a node the planes are that come first and last, in bytes
+    uint32_t octant_shift;
+    uint32_t next;   ///< the child to look at next
+    uint32_t depth;  ///< of the stack
+    LevelView level;
+    const LevelView* upper;  ///< World::upper or far
+    uint32_t index;          ///< of the ray in its batch
     Ray ray, world_ray;
 
     float t_in[kStackSize];
@@ -79,7 +81,7 @@ inline void set_range(Flight& f) {
 
 /// A candidate whose t is settled and within the ray's range. False when another hit comes first.
 template <Mode kMode>
-inline bool accept(Flight& f, const World& world, const Hit& hit) {
+inline bool accept(Query& f, const World& world, const Hit& hit) {
     if (!comes_before(hit, f.best)) return false;
     if (kMode == Mode::after && !comes_before(f.after, hit)) return false;
     if (kMode == Mode::opaque && world.is_cut_out(hit)) {
@@ -93,7 +95,7 @@ inline bool accept(Flight& f, const World& world, const Hit& hit) {
 
 /// True when the query is done.
 template <Mode kMode>
-inline bool offer(Flight& f, const World& world, Hit hit, Interval own) {
+inline bool offer(Query& f, const World& world, Hit hit, Interval own) {
     return settle(hit.t, own, f.world, hit.t) && hit.t >= f.tmin && accept<kMode>(f, world, hit) && is_any(kMode);
 }
 
@@ -188,14 +190,14 @@ inline void visit_node_alone(Flight& f) {
 }
 
 /// Whose triangle an entry of a block is.
-inline void identify(const Flight& f, const World& world, uint32_t id, Hit& hit) {
+inline void identify(const Query& f, const World& world, uint32_t id, Hit& hit) {
     hit.prim = id;
     hit.instance = f.instance != kNoHit ? f.instance : world.identify(hit.prim);
 }
 
 /// One triangle of a block, the long way.
 template <Mode kMode>
-[[gnu::noinline]] bool test_triangle(Flight& f, const World& world, const Block& block, uint32_t lane) {
+[[gnu::noinline]] bool test_triangle(Query& f, const World& world, const Block& block, uint32_t lane) {
     const Vec3 p0 = block.corner(0, lane), p1 = block.corner(1, lane), p2 = block.corner(2, lane);
     TriangleCandidate c;
     const uint32_t id = block.prim(lane);
@@ -206,7 +208,7 @@ template <Mode kMode>
 }
 
 /// settle() for four candidates. Leaves the bits of those that are hits within [tmin, limit].
-inline uint32_t settle_block(const Flight& f, const Block& block, Float4 t, uint32_t lanes, float settled[4]) {
+inline uint32_t settle_block(const Query& f, const Block& block, Float4 t, uint32_t lanes, float settled[4]) {
     Float4 in = Float4::all(-kInfinity), out = Float4::all(kInfinity);
     for (int axis = 0; axis < 3; ++axis) {
         Float4 p[3];
@@ -228,40 +230,54 @@ inline uint32_t settle_block(const Flight& f, const Block& block, Float4 t, uint
            at_most(result, Float4::all(std::numeric_limits<float>::max()));
 }
 
-/// intersect_triangle() for four triangles, operation by operation.
-template <Mode kMode>
-[[gnu::always_inline]] inline bool test_block(Flight& f, const World& world, const Block& block) {
-    const TriangleRay& ray = f.triangle_ray;
-    const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
-    const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
-    Double4 x[3], y[3], z[3];
-    block.corners(ray.axis[0], x), block.corners(ray.axis[1], y), block.corners(ray.axis[2], z);
-    for (int i = 0; i < 3; ++i) {
-        z[i] = z[i] - o[2];
-        x[i] = (x[i] - o[0]) - shear_x * z[i];
-        y[i] = (y[i] - o[1]) - shear_y * z[i];
+/// The edge functions of four triangles, operation by operation as in intersect_triangle().
+struct BlockEdges {
+    Double4 u, v, w;
+    Double4 z[3];
+    uint32_t lanes;  ///< a bit for every triangle that is met somewhere
+    bool undecided;  ///< the sign of a difference that came out as 0 is still open; only where lanes != 0
+
+    [[gnu::always_inline]] BlockEdges(const TriangleRay& ray, const Block& block) {
+        const Double4 o[3] = {Double4::all(ray.o[0]), Double4::all(ray.o[1]), Double4::all(ray.o[2])};
+        const Double4 shear_x = Double4::all(ray.shear_x), shear_y = Double4::all(ray.shear_y);
+        Double4 x[3], y[3];
+        block.corners(ray.axis[0], x), block.corners(ray.axis[1], y), block.corners(ray.axis[2], z);
+        for (int i = 0; i < 3; ++i) {
+            z[i] = z[i] - o[2];
+            x[i] = (x[i] - o[0]) - shear_x * z[i];
+            y[i] = (y[i] - o[1]) - shear_y * z[i];
+        }
+        u = x[2] * y[1] - y[2] * x[1];
+        v = x[0] * y[2] - y[0] * x[2];
+        w = x[1] * y[0] - y[1] * x[0];
+        const Double4 least = smaller(smaller(u, v), w), largest = larger(larger(u, v), w);
+        const uint32_t not_below = not_negative(least), not_above = not_positive(largest);
+        lanes = not_below | not_above;
+        undecided = (not_below & not_positive(least)) | (not_above & not_negative(largest));
     }
-    const Double4 u = x[2] * y[1] - y[2] * x[1];
-    const Double4 v = x[0] * y[2] - y[0] * x[2];
-    const Double4 w = x[1] * y[0] - y[1] * x[0];
-    const Double4 least = smaller(smaller(u, v), w), largest = larger(larger(u, v), w);
-    const uint32_t not_below = not_negative(least), not_above = not_positive(largest);
-    uint32_t lanes = not_below | not_above;
+    /// Of the candidates, before they are settled.
+    [[gnu::always_inline]] Float4 t(double d_z) const {
+        return to_floats((u * z[0] + v * z[1] + w * z[2]) / ((u + v + w) * Double4::all(d_z)));
+    }
+};
+
+/// intersect_triangle() for four triangles.
+template <Mode kMode>
+[[gnu::always_inline]] inline bool test_block(Query& f, const World& world, const Block& block) {
+    const BlockEdges edges(f.triangle_ray, block);
+    uint32_t lanes = edges.lanes;
     if (lanes == 0) [[likely]]
         return false;
-    // The sign of a difference that came out as 0 is still open.
-    if ((not_below & not_positive(least)) | (not_above & not_negative(largest))) [[unlikely]] {
+    if (edges.undecided) [[unlikely]] {
         for (; lanes; lanes &= lanes - 1)
             if (test_triangle<kMode>(f, world, block, static_cast<uint32_t>(__builtin_ctz(lanes)))) return true;
         return false;
     }
-    const Double4 sum = u + v + w;
-    const Float4 t = to_floats((u * z[0] + v * z[1] + w * z[2]) / (sum * Double4::all(ray.d_z)));
     alignas(16) float settled[4];
-    lanes = settle_block(f, block, t, lanes, settled);
+    lanes = settle_block(f, block, edges.t(f.triangle_ray.d_z), lanes, settled);
     if (lanes == 0) return false;
     alignas(32) double us[4], vs[4], ws[4];
-    u.store(us), v.store(vs), w.store(ws);
+    edges.u.store(us), edges.v.store(vs), edges.w.store(ws);
     for (; lanes; lanes &= lanes - 1) {
         const auto lane = static_cast<uint32_t>(__builtin_ctz(lanes));
         const uint32_t id = block.prim(lane);
@@ -270,8 +286,8 @@ template <Mode kMode>
         identify(f, world, id, hit);
         if (!accept<kMode>(f, world, hit)) continue;
         if (is_any(kMode)) return true;
-        const EdgeFunctions edges{us[lane], vs[lane], ws[lane], {}};
-        edges.weights(f.best.u, f.best.v);
+        const EdgeFunctions found{us[lane], vs[lane], ws[lane], {}};
+        found.weights(f.best.u, f.best.v);
     }
     return false;
 }

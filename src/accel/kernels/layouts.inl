@@ -8,6 +8,8 @@ namespace {
 
 #include "accel/kernels/kernel.inl"
 
+#include "accel/kernels/stream.inl"
+
 #include "accel/kernels/entries.inl"
 
 #include "accel/kernels/packet.inl"
@@ -21,6 +23,8 @@ namespace {
 #include "accel/kernels/layout_compact.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/stream.inl"
 
 #include "accel/kernels/entries.inl"
 

@@ -6,6 +6,8 @@ namespace {
 #include "accel/kernels/layout_full.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/stream.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
 }  // namespace full
@@ -15,6 +17,8 @@ namespace {
 #include "accel/kernels/layout_compact.inl"
 
 #include "accel/kernels/kernel.inl"
+
+#include "accel/kernels/stream.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
 }  // namespace compact

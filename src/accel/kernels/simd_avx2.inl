@@ -73,6 +73,30 @@ inline __m256i places_of(uint32_t bits) {
 
 #include "accel/kernels/avx_lanes.inl"
 
+/// Eight words.
+struct Words8 {
+    __m256i v;
+    static Words8 none() { return {_mm256_setzero_si256()}; }
+    static Words8 load(const uint32_t* p) { return {_mm256_load_si256(reinterpret_cast<const __m256i*>(p))}; }
+    /// Sets a bit where a <= b.
+    void set_where_at_most(Float8 a, Float8 b, uint32_t bit) {
+        const __m256i where = _mm256_castps_si256(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ));
+        v = _mm256_or_si256(v, _mm256_and_si256(where, _mm256_set1_epi32(static_cast<int>(1u << bit))));
+    }
+    /// Those whose bits are set, 0 in the place of others.
+    Words8 only(uint32_t lanes) const { return {_mm256_and_si256(v, lanes_of(lanes))}; }
+    /// A bit for each that is not 0.
+    uint32_t some() const { return ~top_bits_of(_mm256_cmpeq_epi32(v, _mm256_setzero_si256())) & 255; }
+    /// Those whose bits are set, one after the other. Writes eight.
+    void pack(uint32_t lanes, uint32_t* to) const {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(v, places_of(lanes)));
+    }
+    static uint32_t top_bits_of(__m256i a) { return static_cast<uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(a))); }
+};
+inline Words8 operator|(Words8 a, Words8 b) { return {_mm256_or_si256(a.v, b.v)}; }
+/// A bit for each whose highest bit is set.
+inline uint32_t top_bits(Words8 a) { return Words8::top_bits_of(a.v); }
+
 /// at_most(in, out) for the children of a node, each at its place in the order from far to near.
 template <class AnyNode>
 inline uint32_t ordered_at_most(Float8 in, Float8 out, const AnyNode& node, uint32_t octant_shift) {
