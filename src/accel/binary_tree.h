@@ -150,6 +150,7 @@ struct LeafPrimitives {
     std::deque<BuildPrimitive> moved = {};
 
     size_t size() const { return own.size() + moved.size(); }
+    BuildPrimitive& operator[](size_t i) { return i < own.size() ? own[i] : moved[i - own.size()]; }
     const BuildPrimitive& operator[](size_t i) const { return i < own.size() ? own[i] : moved[i - own.size()]; }
 };
 

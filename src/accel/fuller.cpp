@@ -1,5 +1,6 @@
 #include "accel/fuller.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "accel/tree_bytes.h"
@@ -9,6 +10,7 @@ namespace {
 
 /// Subtrees of up to so many primitives are divided anew as wholes.
 constexpr uint64_t kTreelet = 256;
+constexpr uint32_t kNowhere = ~0u;
 /// What every leaf may count on for its share of the nodes. From the leaves up, let every node have the children of
 /// both its sides, and where these are more than eight, make a node of the larger side, which has five of them at
 /// least: so there is a node for every four leaves, and the root.
@@ -57,25 +59,22 @@ private:
         next = node.end();
         return true;
     }
+    /// By where each goes: a copy of all would be half of what is held then. What is for no leaf, as it was moved, goes
+    /// behind everything else and is dropped.
     void sort(uint32_t root) {
-        if (primitives_.moved.empty()) return sort_in_place(root);
-        LargeArray<BuildPrimitive> sorted;
-        sorted.reserve(primitives_.size());
-        take(root, sorted);
-        primitives_.own.swap(sorted);
-        std::deque<BuildPrimitive>().swap(primitives_.moved);
-    }
-    /// By where each goes: a copy of all would be half of what is held then.
-    void sort_in_place(uint32_t root) {
-        LargeArray<BuildPrimitive>& own = primitives_.own;
-        LargeArray<uint32_t> to(own.size());
+        LargeArray<uint32_t> to(primitives_.size());
+        std::fill(to.begin(), to.end(), kNowhere);
         uint32_t next = 0;
         find_places(root, next, to);
+        const size_t live = next;
+        for (uint32_t& place : to)
+            if (place == kNowhere) place = next++;
         for (uint32_t i = 0; i < to.size(); ++i)
             while (to[i] != i) {
                 const uint32_t place = to[i];
-                std::swap(own[i], own[place]), std::swap(to[i], to[place]);
+                std::swap(primitives_[i], primitives_[place]), std::swap(to[i], to[place]);
             }
+        primitives_.moved.resize(live - primitives_.own.size());
     }
     void find_places(uint32_t index, uint32_t& next, LargeArray<uint32_t>& to) {
         BinaryNode& node = pool_[index];
@@ -86,16 +85,6 @@ private:
         const uint32_t first = next;
         for (uint32_t i = node.begin(); i < node.end(); ++i) to[i] = next++;
         node.set_leaf(first, next, node.kind());
-    }
-    void take(uint32_t index, LargeArray<BuildPrimitive>& sorted) {
-        BinaryNode& node = pool_[index];
-        if (!node.is_leaf()) {
-            for (const int which : {0, 1}) take(node.child(which), sorted);
-            return;
-        }
-        const size_t begin = sorted.size();
-        for (size_t i = node.begin(); i < node.end(); ++i) sorted.push_back(primitives_[i]);
-        node.set_leaf(begin, sorted.size(), node.kind());
     }
 
     /// Marks what is to be divided anew, from the leaves up; parts of what is marked may be marked as well. What is
@@ -136,9 +125,25 @@ private:
         if (marked_[index]) {
             const Subtree all{pool_[edge(index, 0)].begin(), pool_[edge(index, 1)].end(), depth};
             pool_.give_back_below(index);
-            return divide(primitives_.own, all, options_, monitor_, pool_, source_, index);
+            if (all.end <= primitives_.own.size())
+                return divide(primitives_.own, all, options_, monitor_, pool_, source_, index);
+            return divide_copied(all, index);
         }
         for (const int which : {0, 1}) fill(node.child(which), depth + (node.counted() ? 1 : 0));
+    }
+    /// What is not, or not all of it, in one array.
+    void divide_copied(const Subtree& all, uint32_t index) {
+        LargeArray<BuildPrimitive> copy;
+        copy.reserve(all.end - all.begin);
+        for (size_t i = all.begin; i < all.end; ++i) copy.push_back(primitives_[i]);
+        divide(copy, {0, copy.size(), all.depth}, options_, monitor_, pool_, source_, index);
+        for (size_t i = all.begin; i < all.end; ++i) primitives_[i] = copy[i - all.begin];
+        move_leaves(index, all.begin);
+    }
+    void move_leaves(uint32_t index, size_t by) {
+        BinaryNode& node = pool_[index];
+        if (node.is_leaf()) return node.set_leaf(node.begin() + by, node.end() + by, node.kind());
+        for (const int which : {0, 1}) move_leaves(node.child(which), by);
     }
     /// The first or the last leaf.
     uint32_t edge(uint32_t node, int which) const {

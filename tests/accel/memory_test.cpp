@@ -190,6 +190,19 @@ std::vector<World> worlds_of_points(int n) {
     return all;
 }
 
+/// So many of the same at a time, across a cube.
+World copies(int n, int each) {
+    World w{std::to_string(each) + " copies of large triangles, " + std::to_string(n), {{}}};
+    Random random(17);
+    Vec3 p{}, q{}, r{};
+    for (int i = 0; i < n; ++i) {
+        if (i % each == 0) p = in_cube(random, 1), q = p + in_cube(random, 1), r = p + in_cube(random, 1);
+        w.meshes[0].add(p, q, r);
+    }
+    w.ordinary = false;
+    return w;
+}
+
 std::vector<World> shape_worlds(int n) {
     Random random(4);
     World spheres{"spheres"}, rectangles{"rectangles"}, disks{"disks"}, same_spheres{"coincident spheres"},
@@ -336,6 +349,16 @@ TEST_F(BuildMemory, OfHostileTriangles) {
 TEST_F(BuildMemory, OfPoints) {
     for (const int n : {500, 2000, kCount})
         for (const World& world : worlds_of_points(n)) expect_bounded_in_all_ways(world, kLittle);
+}
+/// Where few boxes are split, of many, and the tree is made fuller.
+TEST_F(BuildMemory, OfCopiesOfLargeTriangles) {
+    for (const int each : {3, 5, 9})
+        for (const uint32_t threads : {1u, 4u})
+            with_threads(threads, [&] {
+                AccelOptions options;
+                options.builder = BvhBuilder::high_quality, options.layout = BvhLayout::compact;
+                expect_bounded(copies(30'000, each), options, kLittle, std::to_string(each) + " copies");
+            });
 }
 /// There are trees that would take more, and are made to take less: so the bound is there for something, and reached.
 TEST_F(BuildMemory, ComesCloseToItsBoundWhereItIsKept) {

@@ -169,6 +169,35 @@ TEST(SplitBoxes, EveryBitOfEveryHit) {
     EXPECT_GT(hit, shot / 2);
 }
 
+/// Three of each, so that the tree is made fuller with parts of boxes in it: they are behind all whole ones then.
+TEST(SplitBoxes, InTreesThatAreMadeFuller) {
+    TestScene scene("copies");
+    TriangleMesh mesh;
+    Random random(1);
+    for (int i = 0; i < 1700; ++i) {
+        const Vec3 p = random.in_cube(1), q = p + random.in_cube(1), r = p + random.in_cube(1);
+        for (int copy = 0; copy < 3; ++copy) mesh.add(p, q, r);
+    }
+    std::vector<Ray> rays;
+    for (uint32_t i = 0; i < 5000; ++i)
+        rays.push_back({random.in_cube(2), 0, point_on(mesh, random.below(1700) * 3, random), kInfinity});
+    for (Ray& ray : rays) ray.d = ray.d - ray.o;
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(1);
+    std::vector<Hit> hits[2];
+    for (const bool split : {false, true}) {
+        AccelOptions options;
+        options.builder = split ? BvhBuilder::high_quality : BvhBuilder::median;
+        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+        ASSERT_TRUE(accel);
+        hits[split].resize(rays.size());
+        accel->intersect(rays, hits[split], RayKind::incoherent);
+    }
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_TRUE(same_bits(hits[1][i], hits[0][i])) << "ray " << describe(rays[i]) << "\nexpected "
+                                                       << describe(hits[0][i]) << "\ngot      " << describe(hits[1][i]);
+}
+
 // A triangle in several leaves counts once.
 TEST(SplitBoxes, NextHitEnumeratesEveryTriangleOnce) {
     for (uint64_t seed = 0; seed < 20; ++seed) {
