@@ -65,6 +65,9 @@ inline constexpr size_t kLargeRange = 4096;
 /// there are not more of these than m / kOwnSourceGrain, and what their last runs waste is bounded (build_memory.h).
 inline constexpr size_t kOwnSourceGrain = 512;
 
+/// No larger leaves are made of smaller ones, and none that a single reference could not lead to.
+inline constexpr uint32_t kMaxMergedLeaf = 8;
+
 /// Nodes by index, in chunks that never move. Every task has a Source of its own, so that workers meet only over runs
 /// of nodes. The two children of a node begin where they share a line of the cache.
 class BinaryPool {
@@ -113,6 +116,12 @@ public:
         if (node.child(1) != node.child(0) + 1) return;
         (*this)[node.child(0)].second = spare_;
         spare_ = node.child(0);
+    }
+
+    /// Gives back the memory of nodes that are not among the first `count`. Not while sources take nodes.
+    void keep(uint32_t count) {
+        used_ = (count + kRun - 1) / kRun * kRun;
+        while (memory_.size() > (used_ + kChunk - 1) / kChunk) memory_.pop_back();
     }
 
 private:

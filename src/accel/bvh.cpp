@@ -7,6 +7,7 @@
 #include "accel/binary_tree.h"
 #include "accel/build_fast.h"
 #include "accel/compact.h"
+#include "accel/merge_leaves.h"
 #include "accel/reinsert.h"
 #include "accel/split_spatial.h"
 #include "base/parallel.h"
@@ -161,9 +162,10 @@ void build_high_quality(LargeArray<BuildPrimitive>& primitives, const BvhOptions
     LeafPrimitives leaves{primitives};
     BinaryBuilder builder(primitives, dividing, monitor, pool, &leaves.moved);
     BinaryPool::Source source(pool);
-    const uint32_t root = source.next_two();
+    uint32_t root = source.next_two();
     builder.run(root, 0, count, room, 0, source);
     if (monitor.poll()) return;
+    if (options.layout == BvhLayout::compact) root = merge_alike_leaves(pool, root, leaves, kReinsertionTreeBytes, 0);
     const uint64_t all = count * options.work;
     reinsert(pool, root, options.max_depth, monitor, all - std::min(all, builder.reported()));
     if (!monitor.poll()) gather(pool, root, leaves, options, monitor, out);
@@ -193,7 +195,9 @@ Bvh build_bvh(LargeArray<BuildPrimitive>& primitives, const BvhOptions& options,
         divide(primitives, {0, primitives.size(), 0}, options, monitor, pool, source, *root);
     }
     LeafPrimitives leaves{primitives};
-    if (!monitor.poll()) gather(pool, *root, leaves, options, monitor, out);
+    if (monitor.poll()) return out;
+    if (options.layout == BvhLayout::compact) root = merge_alike_leaves(pool, *root, leaves, 0, sizeof(uint32_t));
+    gather(pool, *root, leaves, options, monitor, out);
     return out;
 }
 

@@ -10,6 +10,7 @@
 #include "accel/compact_block.h"
 #include "accel/compact_node.h"
 #include "accel/fuller.h"
+#include "accel/merge_leaves.h"
 #include "accel/tree_bytes.h"
 #include "base/parallel.h"
 
@@ -17,8 +18,6 @@ namespace steradian {
 namespace {
 
 constexpr size_t kIdGrain = 4096;
-/// No larger leaves are made of smaller ones, and none that a single reference could not lead to.
-constexpr uint32_t kMaxMergedLeaf = 8;
 
 /// What is decided of an inner node.
 class Choice {
@@ -373,7 +372,10 @@ void gather(BinaryPool& pool, uint32_t root, LeafPrimitives& primitives, const B
     if (!gatherer.choose(root)) {
         gatherer.forget();
         make_fuller(pool, root, primitives, options, monitor);
-        if (!monitor.poll()) gatherer.choose(root);
+        if (monitor.poll()) return;
+        if (options.layout == BvhLayout::compact)
+            root = merge_alike_leaves(pool, root, primitives, 0, sizeof(uint32_t));
+        gatherer.choose(root);
     }
     if (!monitor.poll()) gatherer.run(root, options.layout);
 }

@@ -32,7 +32,8 @@ Box4 join(const Box4& a, const Box4& b) {
     return both;
 }
 
-static_assert(kReinsertionBytes == 2 * sizeof(uint32_t) + sizeof(uint8_t) + sizeof(Move));
+static_assert(kReinsertionTreeBytes == 2 * sizeof(uint32_t) + sizeof(uint8_t));
+static_assert(kReinsertionBytes == kReinsertionTreeBytes + sizeof(Move));
 
 class Tree {
 public:

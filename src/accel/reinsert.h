@@ -7,7 +7,7 @@
 namespace steradian {
 
 /// Of each node: its rank, parent and height, and a move.
-inline constexpr size_t kReinsertionBytes = 21;
+inline constexpr size_t kReinsertionTreeBytes = 9, kReinsertionBytes = kReinsertionTreeBytes + 12;
 
 /// Optimises the tree of `root`, which stays the root; each leaf keeps what it had. No leaf gets deeper than
 /// `max_depth`. The sum of the surfaces of all nodes never grows. Holds kReinsertionBytes a node. Uses all workers; the

@@ -8,6 +8,7 @@
 #include "accel/children.h"
 #include "accel/compact.h"
 #include "accel/kernels/kernels.h"
+#include "brute_force.h"
 #include "scenes.h"
 #include "support/support.h"
 
@@ -221,6 +222,40 @@ TEST(Compact, TakesAtMost36BytesATriangle) {
     // The same tests in boxes that are a little larger.
     EXPECT_GT(compact->statistics().cost, full->statistics().cost);
     EXPECT_LT(compact->statistics().cost, 1.05 * full->statistics().cost);
+}
+
+// Four in each place, for which leaves are merged, and others that are not.
+TEST(Compact, GivesTheSameHitsWhereLeavesAreMerged) {
+    TestScene scene("along a diagonal");
+    TriangleMesh mesh;
+    Random random(1);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 2000; ++i) {
+        const auto x = static_cast<float>(i);
+        const Vec3 p{x, x, x}, q{x + 0.3f, x, x}, r{x, x + 0.3f, x + 0.1f};
+        for (int copy = 0; copy < (i % 100 ? 4 : 1); ++copy) mesh.add(p, q, r);
+        const Vec3 from = p + random.in_cube(5);
+        rays.push_back({from, 0, p + Vec3{0.1f, 0.1f, 0.1f / 3} - from, kInfinity});
+    }
+    scene.meshes.push_back(std::move(mesh));
+    scene.finish(1);
+    for (const BvhBuilder builder : {BvhBuilder::sah, BvhBuilder::median, BvhBuilder::fast, BvhBuilder::high_quality}) {
+        std::vector<Hit> hits[2];
+        for (const BvhLayout layout : {BvhLayout::full, BvhLayout::compact}) {
+            AccelOptions options;
+            options.builder = builder, options.layout = layout;
+            const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+            ASSERT_TRUE(accel);
+            hits[int(layout)].resize(rays.size());
+            accel->intersect(rays, hits[int(layout)], RayKind::incoherent);
+        }
+        size_t found = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_TRUE(same_bits(hits[1][i], hits[0][i])) << int(builder) << ", ray " << i;
+            found += hits[0][i].found();
+        }
+        EXPECT_GT(found, rays.size() / 2);
+    }
 }
 
 }  // namespace
