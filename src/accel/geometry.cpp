@@ -156,10 +156,11 @@ Box child_box(const Level& level, uint32_t node, uint32_t child) {
 
 LevelView Level::view() const {
     const void* none = &kNoBlocks;
+    const LeafEntry* const others = entries.empty() ? nullptr : entries.data();
     if (!compact.nodes.empty())
-        return {compact.nodes.data(), compact.blocks.empty() ? none : compact.blocks.data(), entries.data()};
+        return {compact.nodes.data(), compact.blocks.empty() ? none : compact.blocks.data(), others};
     if (nodes.empty()) return {};
-    return {nodes.data(), blocks.empty() ? none : blocks.data(), entries.data()};
+    return {nodes.data(), blocks.empty() ? none : blocks.data(), others};
 }
 
 Box shape_bounds(const Geometry& geometry, uint32_t prim) {

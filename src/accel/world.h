@@ -24,7 +24,7 @@ constexpr uint32_t part_place(uint32_t node, uint32_t child) { return node * kWi
 struct LevelView {
     const void* nodes = nullptr;      ///< what they are depends on the layout: kernels/layout_*.inl
     const void* blocks = &kNoBlocks;  ///< the same; that where there are no triangles
-    const LeafEntry* entries = nullptr;
+    const LeafEntry* entries = nullptr;  ///< nullptr where there are none
 };
 
 /// The shapes of one geometry; nothing for triangles, which are in blocks.

@@ -7,7 +7,8 @@
 // have come from memory. After Barringer & Akenine-Möller 2014, "Dynamic Ray Stream Traversal", with bits instead of
 // lists.
 //
-// What is not a triangle of the upper level is left to be done by every ray for itself (trace in kernel.inl).
+// Only where all there is are triangles of the upper level: where there are shapes or instances as well, or parts of
+// them, rays go by themselves (trace in kernel.inl), since what each of them has to do there cannot be shared.
 
 inline constexpr uint32_t kStream = 64;
 /// Fewer rays are traced otherwise.
@@ -55,24 +56,15 @@ struct StreamEntries {
     }
 };
 
-/// What one ray has to visit by itself.
-struct LeftOver {
-    uint32_t ray, ref;
-};
-inline constexpr uint32_t kMostLeftOver = 4 * kStream;
-
 /// Rays whose directions have the same signs.
 struct Stream {
     StreamRay slab[kStream];  ///< apart from the rest, so that all of them stay in the nearest cache
     Query query[kStream];
-    alignas(32) Ray ray[kStream];  ///< canonical
-    uint32_t index[kStream];       ///< in their batch
+    uint32_t index[kStream];  ///< in their batch
     uint32_t count = 0;
     bool negative[3];
     uint64_t near_plane[3], far_plane[3];
     uint64_t live = 0;  ///< a bit for every ray that is not blocked yet
-    uint32_t left_over_count = 0;
-    LeftOver left_over[kMostLeftOver];
 
     static uint64_t bit(uint32_t i) { return uint64_t(1) << i; }
 
@@ -87,8 +79,7 @@ struct Stream {
     /// False when the ray hits nothing by definition.
     bool add(const Ray& in, uint32_t place) {
         static_assert(sizeof(Ray) == 8 * sizeof(float));
-        Ray& r = ray[count];
-        r = in;
+        alignas(32) Ray r = in;  // in its canonical form
         const Float8 size = magnitude(Float8::load(&r.o.x));
         // Nearly every ray is its own canonical form.
         const uint32_t usual = at_most(Float8::load(kLeastUsual), size) & at_most(size, Float8::load(kMostUsual));
@@ -155,43 +146,6 @@ inline void end_if_blocked(Stream& s, uint32_t i) {
     if (s.query[i].best.found()) s.live &= ~Stream::bit(i);
 }
 
-/// Does what the rays have left over, each for itself.
-template <Mode kMode>
-[[gnu::noinline]] void do_left_over(Stream& s, const World& world) {
-    Flight flights[kInFlight];
-    Queues<kInFlight> queues;
-    uint32_t next = 0;
-    const auto start = [&](Flight& f) {
-        while (next < s.left_over_count) {
-            const LeftOver& what = s.left_over[next++];
-            if (!(s.live >> what.ray & 1)) continue;
-            f.world_ray = s.ray[what.ray];
-            set_out<kMode>(f, world, what.ray);
-            if (kMode == Mode::opaque) f.after = {};
-            f.depth = 1;  // kFinished
-            f.next = what.ref;
-            return queues.add(f);
-        }
-    };
-    for (Flight& f : flights) start(f);
-    queues.template run<kMode>(world, [&](Flight& f) {
-        Query& q = s.query[f.index];
-        if (f.best.found()) q.best = f.best;
-        if (kMode == Mode::opaque && f.after.instance != kNoHit) q.after = f.after;
-        end_if_blocked(s, f.index);
-        start(f);
-    });
-    s.left_over_count = 0;
-}
-
-template <Mode kMode>
-[[gnu::noinline]] void leave_over(Stream& s, const World& world, const StreamEntry& what) {
-    for (uint64_t rest = what.rays & s.live; rest; rest &= rest - 1) {
-        if (s.left_over_count == kMostLeftOver) do_left_over<kMode>(s, world);
-        s.left_over[s.left_over_count++] = {static_cast<uint32_t>(__builtin_ctzll(rest)), what.ref};
-    }
-}
-
 /// Leaves that wait for their memory.
 using WaitingLeaves = StreamEntries<kLeavesAtOnce + 2 * kWidth>;
 
@@ -201,10 +155,6 @@ inline void visit_leaves(Stream& s, const World& world, WaitingLeaves& leaves) {
     for (uint32_t i = 0; i < leaves.count; ++i) {
         if (i + kAhead < leaves.count) prefetch(world.upper, leaves.ref[i + kAhead]);
         const StreamEntry leaf = leaves.at(i);
-        if (ChildRef::kind(leaf.ref) != ItemKind::block) [[unlikely]] {
-            leave_over<kMode>(s, world, leaf);
-            continue;
-        }
         for (Blocks blocks(world.upper, leaf.ref); blocks.more(); blocks.next()) {
             const Block block = blocks.block();
             for (uint64_t rest = leaf.rays & s.live; rest; rest &= rest - 1) {
@@ -248,7 +198,7 @@ private:
     uint32_t first_ = 0, waiting_ = 1;
 };
 
-/// All rays of the stream, to their ends but for what they leave over.
+/// All rays of the stream, to their ends.
 template <Mode kMode>
 inline void trace_stream(Stream& s, const World& world) {
     WaitingNodes nodes(s.live);
@@ -321,11 +271,7 @@ template <Mode kMode>
             if (!s.add(rays[i], i)) result[i] = Accel::clear;
         }
         if (s.count == 0) continue;
-        if (world.far.nodes != nullptr)
-            for (uint32_t i = 0; i < s.count; ++i)
-                if (world.is_far(s.ray[i])) leave_over<kMode>(s, world, {Stream::bit(i), kEnterFar});
         trace_stream<kMode>(s, world);
-        if (s.left_over_count) do_left_over<kMode>(s, world);
         for (uint32_t i = 0; i < s.count; ++i) {
             const bool met_cut_out = kMode == Mode::opaque && s.query[i].after.instance != kNoHit;
             result[s.index[i]] = !(s.live >> i & 1) ? Accel::blocked : met_cut_out ? Accel::cut_out : Accel::clear;
@@ -337,7 +283,7 @@ template <Mode kMode>
 template <Mode kMode>
 inline void trace_any(const World& world, const Ray* rays, uint8_t* result, size_t count) {
     static_assert(is_any(kMode));
-    if (count < kLeastStream || world.upper.nodes == nullptr)
+    if (count < kLeastStream || world.upper.nodes == nullptr || world.upper.entries != nullptr)
         return trace<kMode>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
     for (size_t done = 0; done < count; done += kMostOrdered)
         trace_ordered<kMode>(world, rays + done, result + done,
