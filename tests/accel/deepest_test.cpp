@@ -191,5 +191,52 @@ TEST(Deepest, EverythingIsVisited) {
     }
 }
 
+/// As deep as there are hierarchies, with seven more nodes left behind at every level, and so wide at the root that no
+/// node waits for its memory any more: what the stack of a stream must hold. All rays meet all boxes; every fourth
+/// meets the one triangle that there is in all leaves.
+TEST(Deepest, StreamsHoldWhatIsLeftBehind) {
+    const Box box{{-1, -4, -4}, {1, 4, 4}};
+    // Below the root of the chain seven nodes with 64 twigs each, below its other nodes seven twigs.
+    const uint32_t leaf = ChildRef::leaf(ItemKind::block, 0, 1), twig = kMaxNodeLevels, branch = twig + 1,
+                   bough = twig + 2;
+    std::vector<WideNode> nodes(bough + 1);
+    for (uint32_t k = 0; k < nodes.size(); ++k)
+        for (uint32_t child = 0; child < kWidth; ++child) {
+            const bool chain = child == kSiblings, exists = k != twig || chain;
+            for (int axis = 0; axis < 3; ++axis) {
+                nodes[k].plane[axis][0][child] = exists ? box.lo[axis] : kInfinity;
+                nodes[k].plane[axis][1][child] = exists ? box.hi[axis] : -kInfinity;
+            }
+            // The chain is taken from the stack first: it is pushed last.
+            nodes[k].child[child] = k == twig               ? leaf
+                                    : k > twig              ? ChildRef::node(k - 1 == twig ? twig : branch)
+                                    : chain && k + 1 < twig ? ChildRef::node(k + 1)
+                                    : k == 0                ? ChildRef::node(bough)
+                                                            : ChildRef::node(twig);
+        }
+    const Vec3 corners[3] = {{0, -4, -4}, {0, 4, -4}, {0, 0, 4}};
+    TriangleBlock block;
+    for (uint32_t lane = 0; lane < kBlock; ++lane) {
+        block.prim[lane] = lane == 0 ? 0 : kNoHit;
+        for (int which = 0; which < 3; ++which)
+            for (int axis = 0; axis < 3; ++axis) block.vertex[which][axis][lane] = corners[which][axis];
+    }
+    const TrianglePart part{0, 0};
+    World world;
+    world.upper = {nodes.data(), &block, nullptr};
+    world.parts = &part, world.part_count = 1;
+
+    std::vector<Ray> rays;
+    for (int i = 0; i < 200; ++i) {
+        const float at = i % 4 == 3 ? 0.001f * static_cast<float>(i) : 3.5f;
+        rays.push_back({{-5, at, at}, 0, {1, 0, 0}, kInfinity});
+    }
+    for (const Isa isa : supported_isas()) {
+        std::vector<uint8_t> occluded(rays.size());
+        (*select_kernels(isa))->occluded(world, rays.data(), occluded.data(), rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], i % 4 == 3) << i;
+    }
+}
+
 }  // namespace
 }  // namespace steradian::test
