@@ -1,4 +1,4 @@
-// What callers of the kernels call, but for coherent rays and cut-outs. Included after stream.inl.
+// What callers of the kernels call, but for coherent rays and cut-outs. Included after stream_order.inl.
 
 void intersect(const World& world, const Ray* rays, Hit* hits, size_t count) noexcept {
     if (count == 1) {

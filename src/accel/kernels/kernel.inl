@@ -292,20 +292,21 @@ template <Mode kMode>
     return false;
 }
 
-/// True when the query is done.
+/// `ray` is f's in full. True when the query is done.
 template <Mode kMode>
-[[gnu::noinline]] bool test_shape(Flight& f, const World& world, uint32_t instance, const LeafEntry& entry) {
+[[gnu::noinline]] bool test_shape(Query& f, const Ray& ray, const World& world, const LeafEntry& entry) {
+    const uint32_t instance = f.instance != kNoHit ? f.instance : entry.instance;
     const ShapesView& shapes = world.shapes[world.instances[instance].geometry];
     const uint32_t prim = entry.prim;
     if (shapes.spheres) {
-        const SphereCandidates c = intersect_sphere(f.ray, shapes.spheres[prim]);
+        const SphereCandidates c = intersect_sphere(ray, shapes.spheres[prim]);
         for (int i = 0; i < c.count; ++i)
             if (offer<kMode>(f, world, {c.t[i], 0, 0, prim, instance}, slab_interval(entry.own, f.slab))) return true;
         return false;
     }
     PlanarCandidate c;
-    const bool met = shapes.rectangles ? intersect_rectangle(f.ray, shapes.rectangles[prim], c)
-                                       : intersect_disk(f.ray, shapes.disks[prim], c);
+    const bool met = shapes.rectangles ? intersect_rectangle(ray, shapes.rectangles[prim], c)
+                                       : intersect_disk(ray, shapes.disks[prim], c);
     return met && offer<kMode>(f, world, {c.t, c.a, c.b, prim, instance}, slab_interval(entry.own, f.slab));
 }
 
@@ -321,10 +322,8 @@ template <Mode kMode>
 template <Mode kMode>
 inline bool visit_shapes(Flight& f, const World& world, uint32_t ref) {
     const LeafEntry* entry = f.level.entries + ChildRef::first(ref);
-    for (const LeafEntry* end = entry + ChildRef::count(ref); entry < end; ++entry) {
-        const uint32_t instance = f.instance != kNoHit ? f.instance : entry->instance;
-        if (test_shape<kMode>(f, world, instance, *entry)) return true;
-    }
+    for (const LeafEntry* end = entry + ChildRef::count(ref); entry < end; ++entry)
+        if (test_shape<kMode>(f, f.ray, world, *entry)) return true;
     return false;
 }
 
@@ -493,8 +492,8 @@ private:
 inline constexpr uint32_t kInFlight = 32;
 
 /// sink(index, hit) for every ray, in any order.
-template <Mode kMode, class Sink>
-inline void trace(const World& world, const Ray* rays, const Hit* after, size_t count, Sink sink) {
+template <Mode kMode, class Rays, class Sink>
+inline void trace(const World& world, Rays rays, const Hit* after, size_t count, Sink sink) {
     Flight flights[kInFlight];
     Queues<kInFlight> queues;
     size_t next = 0;

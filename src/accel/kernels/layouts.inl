@@ -10,6 +10,8 @@ namespace {
 
 #include "accel/kernels/stream.inl"
 
+#include "accel/kernels/stream_order.inl"
+
 #include "accel/kernels/entries.inl"
 
 #include "accel/kernels/packet.inl"
@@ -25,6 +27,8 @@ namespace {
 #include "accel/kernels/kernel.inl"
 
 #include "accel/kernels/stream.inl"
+
+#include "accel/kernels/stream_order.inl"
 
 #include "accel/kernels/entries.inl"
 

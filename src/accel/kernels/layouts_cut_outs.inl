@@ -8,6 +8,8 @@ namespace {
 #include "accel/kernels/kernel.inl"
 
 #include "accel/kernels/stream.inl"
+
+#include "accel/kernels/stream_order.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
 }  // namespace full
@@ -19,6 +21,8 @@ namespace {
 #include "accel/kernels/kernel.inl"
 
 #include "accel/kernels/stream.inl"
+
+#include "accel/kernels/stream_order.inl"
 }  // namespace
 #include "accel/kernels/cut_outs.inl"
 }  // namespace compact

@@ -7,14 +7,15 @@
 // have come from memory. After Barringer & Akenine-Möller 2014, "Dynamic Ray Stream Traversal", with bits instead of
 // lists.
 //
-// Only where all there is are triangles of the upper level: where there are shapes or instances as well, or parts of
-// them, rays go by themselves (trace in kernel.inl), since what each of them has to do there cannot be shared.
+// What rays do not share they visit by themselves afterwards (OwnVisits), in flight (kernel.inl): instances, and
+// everything where they are not near. Rays that share too little even so had better be in flight from the start, and
+// the caller is told.
 
 inline constexpr uint32_t kStream = 64;
-/// Fewer rays are traced otherwise.
-inline constexpr uint32_t kLeastStream = 96;
-/// Rays that are put into order together.
-inline constexpr uint32_t kMostOrdered = 4096;
+/// With fewer rays at a node on average a stream is slower than rays in flight.
+inline constexpr uint32_t kLeastShared = 4;
+/// What a visit of a ray by itself counts as.
+inline constexpr uint32_t kOwnVisit = 8;
 /// Nodes, and leaves, on their way from memory.
 inline constexpr uint32_t kAhead = 8;
 /// Leaves are visited when there are more.
@@ -24,9 +25,14 @@ inline constexpr uint32_t kLeavesAtOnce = 24;
 inline constexpr uint32_t kSoftDepth = 64;
 inline constexpr uint32_t kStreamStack = kSoftDepth + (kWidth - 1) * kMaxNodeLevels + 3 * kWidth;
 
-/// What the slab test wants of a ray.
+/// What the slab test wants of a ray: where it starts and the start of its range, the reciprocals of its direction and
+/// its limit.
 struct alignas(32) StreamRay {
-    float o[3], start, inv_d[3], limit;
+    float parts[8];
+    float o(int axis) const { return parts[axis]; }
+    float start() const { return parts[3]; }
+    float inv_d(int axis) const { return parts[4 + axis]; }
+    float limit() const { return parts[7]; }
 };
 
 /// What some rays, a bit for each, have to visit.
@@ -60,11 +66,13 @@ struct StreamEntries {
 struct Stream {
     StreamRay slab[kStream];  ///< apart from the rest, so that all of them stay in the nearest cache
     Query query[kStream];
+    Ray ray[kStream];         ///< canonical
     uint32_t index[kStream];  ///< in their batch
     uint32_t count = 0;
     bool negative[3];
     uint64_t near_plane[3], far_plane[3];
     uint64_t live = 0;  ///< a bit for every ray that is not blocked yet
+    uint64_t far = 0;   ///< and for every one that has another upper level as well
 
     static uint64_t bit(uint32_t i) { return uint64_t(1) << i; }
 
@@ -74,25 +82,24 @@ struct Stream {
             near_plane[axis] = static_cast<uint32_t>(2 * axis + negative[axis]) * kPlaneBytes;
             far_plane[axis] = near_plane[axis] ^ kPlaneBytes;
         }
-        count = 0, live = 0;
+        count = 0, live = far = 0;
     }
     /// False when the ray hits nothing by definition.
-    bool add(const Ray& in, uint32_t place) {
-        static_assert(sizeof(Ray) == 8 * sizeof(float));
-        alignas(32) Ray r = in;  // in its canonical form
-        const Float8 size = magnitude(Float8::load(&r.o.x));
+    bool add(const World& world, const Ray& in, uint32_t place) {
+        Ray& r = ray[count];
+        r = in;
+        const Float8 size = magnitude(parts_of(r));
         // Nearly every ray is its own canonical form.
         const uint32_t usual = at_most(Float8::load(kLeastUsual), size) & at_most(size, Float8::load(kMostUsual));
         if (usual != 255 || !(0 <= in.tmin && in.tmin <= in.tmax)) [[unlikely]] {
             if (!canonical(in, r)) return false;
         }
         // The same parts but for the direction.
-        static_assert(sizeof(StreamRay) == 8 * sizeof(float));
-        const Float8 parts = Float8::load(&r.o.x);
-        select(0x70, Float8::all(1) / parts, parts).store(slab[count].o);
+        const Float8 parts = parts_of(r);
+        select(0x70, Float8::all(1) / parts, parts).store(slab[count].parts);
         Query& q = query[count];
         for (int axis = 0; axis < 3; ++axis) {
-            q.slab.o[axis] = slab[count].o[axis], q.slab.inv_d[axis] = slab[count].inv_d[axis];
+            q.slab.o[axis] = slab[count].o(axis), q.slab.inv_d[axis] = slab[count].inv_d(axis);
             q.slab.negative[axis] = negative[axis];
         }
         q.start = q.tmin = r.tmin, q.limit = r.tmax;
@@ -103,11 +110,20 @@ struct Stream {
         q.after.instance = kNoHit;
         new (&q.triangle_ray) TriangleRay(r);
         index[count] = place;
+        if (world.is_far(r)) [[unlikely]]
+            far |= bit(count);
         live |= bit(count++);
         return true;
     }
 
 private:
+    static Float8 parts_of(const Ray& ray) {
+        static_assert(sizeof(Ray) == sizeof(StreamRay));
+        alignas(32) float parts[8];
+        std::memcpy(parts, &ray, sizeof parts);
+        return Float8::load(parts);
+    }
+
     static constexpr float kMost = std::numeric_limits<float>::max();
     alignas(32) static constexpr float kLeastUsual[8] = {0, 0, 0, 0, kMinDirection, kMinDirection, kMinDirection, 0};
     alignas(32) static constexpr float kMostUsual[8] = {kMost, kMost, kMost, kMost, kMost, kMost, kMost, kInfinity};
@@ -128,9 +144,9 @@ inline MetChildren test_stream(const Stream& s, const Node& node, uint64_t rays)
             const auto k = static_cast<uint32_t>(__builtin_ctz(rest));
             const StreamRay& ray = first[k];
             // The limit grows with the planes: that is a little more to visit, and one operation less.
-            Float8 in = Float8::all(ray.start), out = Float8::all(ray.limit);
+            Float8 in = Float8::all(ray.start()), out = Float8::all(ray.limit());
             for (int axis = 0; axis < 3; ++axis) {
-                const Float8 o = Float8::all(ray.o[axis]), inv_d = Float8::all(ray.inv_d[axis]);
+                const Float8 o = Float8::all(ray.o(axis)), inv_d = Float8::all(ray.inv_d(axis));
                 in = larger((near[axis] - o) * inv_d, in);
                 out = smaller((far[axis] - o) * inv_d, out);
             }
@@ -146,15 +162,98 @@ inline void end_if_blocked(Stream& s, uint32_t i) {
     if (s.query[i].best.found()) s.live &= ~Stream::bit(i);
 }
 
+/// A run of shapes.
+template <Mode kMode>
+inline void visit_shapes(Stream& s, const World& world, const StreamEntry& leaf) {
+    const LeafEntry* entry = world.upper.entries + ChildRef::first(leaf.ref);
+    for (const LeafEntry* end = entry + ChildRef::count(leaf.ref); entry < end; ++entry) {
+        for (uint64_t rest = leaf.rays & s.live; rest; rest &= rest - 1) {
+            const auto ray = static_cast<uint32_t>(__builtin_ctzll(rest));
+            test_shape<kMode>(s.query[ray], s.ray[ray], world, *entry);
+            end_if_blocked(s, ray);
+        }
+    }
+}
+
+/// What rays of a stream visit by themselves.
+class OwnVisits {
+public:
+    /// Of those of the rays that live.
+    template <Mode kMode>
+    void add(Stream& s, const World& world, uint64_t rays, uint32_t ref) {
+        if (count_ > kMost - kStream) make<kMode>(s, world);
+        for (rays &= s.live; rays; rays &= rays - 1) {
+            ray_[count_] = static_cast<uint8_t>(__builtin_ctzll(rays));
+            ref_[count_++] = ref;
+            ++all_;
+        }
+    }
+    /// All that have been added.
+    template <Mode kMode>
+    [[gnu::noinline]] void make(Stream& s, const World& world) {
+        uint32_t ref[kMost], end[kStream];
+        order_by_ray(ref, end);
+        count_ = 0;
+        Flight flights[kInFlight];
+        Queues<kInFlight> queues;
+        uint32_t ray = 0, next = 0;
+        const auto start = [&](Flight& f) {
+            for (; ray < kStream; ++ray) {
+                if (!(s.live >> ray & 1)) next = end[ray];
+                if (next < end[ray]) break;
+            }
+            if (ray == kStream) return;
+            f.world_ray = s.ray[ray];
+            if (kMode == Mode::opaque) f.after = {};
+            set_out<kMode>(f, world, ray);
+            while (next < end[ray] && f.depth < kMaxParted) f.push(ref[next++]);
+            f.next = pop<kMode>(f);
+            queues.add(f);
+        };
+        for (Flight& f : flights) start(f);
+        queues.template run<kMode>(world, [&](Flight& f) {
+            if (f.best.found()) s.live &= ~Stream::bit(f.index);
+            if (kMode == Mode::opaque && f.after.instance != kNoHit) s.query[f.index].after = f.after;
+            start(f);
+        });
+    }
+    bool none() const { return count_ == 0; }
+    uint64_t all() const { return all_; }  ///< how many there were, those already made too
+
+private:
+    static constexpr uint32_t kMost = 1024;
+
+    /// Ray by ray; what ray i visits ends before end[i].
+    void order_by_ray(uint32_t* ref, uint32_t* end) const {
+        for (uint32_t i = 0; i < kStream; ++i) end[i] = 0;
+        for (uint32_t i = 0; i < count_; ++i) ++end[ray_[i]];
+        for (uint32_t i = 0, first = 0; i < kStream; ++i) first += std::exchange(end[i], first);
+        for (uint32_t i = 0; i < count_; ++i) ref[end[ray_[i]]++] = ref_[i];
+    }
+
+    uint32_t ref_[kMost];
+    uint8_t ray_[kMost];
+    uint32_t count_ = 0;
+    uint64_t all_ = 0;
+};
+
 /// Leaves that wait for their memory.
 using WaitingLeaves = StreamEntries<kLeavesAtOnce + 2 * kWidth>;
 
 template <Mode kMode>
-inline void visit_leaves(Stream& s, const World& world, WaitingLeaves& leaves) {
+inline void visit_leaves(Stream& s, const World& world, WaitingLeaves& leaves, OwnVisits& own) {
     for (uint32_t i = 0; i < min_of(leaves.count, kAhead); ++i) prefetch(world.upper, leaves.ref[i]);
     for (uint32_t i = 0; i < leaves.count; ++i) {
         if (i + kAhead < leaves.count) prefetch(world.upper, leaves.ref[i + kAhead]);
         const StreamEntry leaf = leaves.at(i);
+        if (ChildRef::kind(leaf.ref) != ItemKind::block) [[unlikely]] {
+            if (ChildRef::kind(leaf.ref) == ItemKind::instance) {
+                own.add<kMode>(s, world, leaf.rays, leaf.ref);
+            } else {
+                visit_shapes<kMode>(s, world, leaf);
+            }
+            continue;
+        }
         for (Blocks blocks(world.upper, leaf.ref); blocks.more(); blocks.next()) {
             const Block block = blocks.block();
             for (uint64_t rest = leaf.rays & s.live; rest; rest &= rest - 1) {
@@ -198,94 +297,25 @@ private:
     uint32_t first_ = 0, waiting_ = 1;
 };
 
-/// All rays of the stream, to their ends.
+/// All rays of the stream, to their ends. False when they would have been faster in flight.
 template <Mode kMode>
-inline void trace_stream(Stream& s, const World& world) {
-    WaitingNodes nodes(s.live);
+inline bool trace_stream(Stream& s, const World& world) {
+    uint64_t visits = 0, of_rays = 0;
+    OwnVisits own;
+    if (s.far) own.add<kMode>(s, world, s.far, ChildRef::node(0));
+    WaitingNodes nodes(s.live & ~s.far);
     WaitingLeaves leaves;
     for (StreamEntry at; nodes.pop(world, s.live, at);) {
+        ++visits, of_rays += static_cast<uint32_t>(__builtin_popcountll(at.rays));
         const MetChildren met = test_stream(s, node_at(world.upper, at.ref), at.rays);
         const uint32_t some = (met.rays[0] | met.rays[1]).some(), is_leaf = top_bits(met.ref);
         nodes.push(some & ~is_leaf, met);
         leaves.push(some & is_leaf, met);
-        if (leaves.count > kLeavesAtOnce) visit_leaves<kMode>(s, world, leaves);
+        if (leaves.count > kLeavesAtOnce) visit_leaves<kMode>(s, world, leaves, own);
     }
-    visit_leaves<kMode>(s, world, leaves);
-}
-
-/// The order in which the rays of a span come together as streams: by octant, and within one by where they start, as
-/// places along a Morton curve.
-class StreamOrder {
-public:
-    uint16_t place[kMostOrdered];
-    uint8_t octant[kMostOrdered];  ///< of the ray at that place of the order
-
-    StreamOrder(const Ray* rays, uint32_t count) {
-        Box starts;
-        for (uint32_t i = 0; i < count; ++i) starts.extend(rays[i].o);
-        const float size = max_component(starts.hi - starts.lo);
-        const float scale = size > 0 && size < kInfinity ? kCells / size : 0;
-        uint16_t key[kMostOrdered];
-        uint32_t of_low[256] = {}, of_high[256] = {};
-        for (uint32_t i = 0; i < count; ++i) {
-            uint32_t k = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const float at = (rays[i].o[axis] - starts.lo[axis]) * scale;
-                k |= uint32_t(kSpread[at > 0 ? static_cast<uint32_t>(min_of(at, kCells - 1)) : 0]) << axis;
-                k |= uint32_t(std::signbit(rays[i].d[axis])) << (kKeyBits + axis);
-            }
-            key[i] = static_cast<uint16_t>(k);
-            ++of_low[k & 255], ++of_high[k >> 8];
-        }
-        for (uint32_t b = 0, low = 0, high = 0; b < 256; ++b) {
-            low += std::exchange(of_low[b], low);
-            high += std::exchange(of_high[b], high);
-        }
-        uint16_t by_low[kMostOrdered];
-        for (uint32_t i = 0; i < count; ++i) by_low[of_low[key[i] & 255]++] = static_cast<uint16_t>(i);
-        for (uint32_t i = 0; i < count; ++i) {
-            const uint32_t k = key[by_low[i]], to = of_high[k >> 8]++;
-            place[to] = by_low[i];
-            octant[to] = static_cast<uint8_t>(k >> kKeyBits);
-        }
-    }
-
-private:
-    static constexpr float kCells = 16;
-    static constexpr uint32_t kKeyBits = 12;
-    /// Four bits, with two zeros between them.
-    static constexpr uint16_t kSpread[16] = {0x000, 0x001, 0x008, 0x009, 0x040, 0x041, 0x048, 0x049,
-                                             0x200, 0x201, 0x208, 0x209, 0x240, 0x241, 0x248, 0x249};
-};
-
-/// An Accel::Occlusion for each of at most kMostOrdered rays.
-template <Mode kMode>
-[[gnu::noinline]] void trace_ordered(const World& world, const Ray* rays, uint8_t* result, uint32_t count) {
-    const StreamOrder order(rays, count);
-    Stream s;
-    for (uint32_t next = 0; next < count;) {
-        const uint8_t octant = order.octant[next];
-        s.start(octant);
-        for (; next < count && s.count < kStream && order.octant[next] == octant; ++next) {
-            const uint32_t i = order.place[next];
-            if (!s.add(rays[i], i)) result[i] = Accel::clear;
-        }
-        if (s.count == 0) continue;
-        trace_stream<kMode>(s, world);
-        for (uint32_t i = 0; i < s.count; ++i) {
-            const bool met_cut_out = kMode == Mode::opaque && s.query[i].after.instance != kNoHit;
-            result[s.index[i]] = !(s.live >> i & 1) ? Accel::blocked : met_cut_out ? Accel::cut_out : Accel::clear;
-        }
-    }
-}
-
-/// The same for any number of rays.
-template <Mode kMode>
-inline void trace_any(const World& world, const Ray* rays, uint8_t* result, size_t count) {
-    static_assert(is_any(kMode));
-    if (count < kLeastStream || world.upper.nodes == nullptr || world.upper.entries != nullptr)
-        return trace<kMode>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
-    for (size_t done = 0; done < count; done += kMostOrdered)
-        trace_ordered<kMode>(world, rays + done, result + done,
-                             static_cast<uint32_t>(min_of<size_t>(count - done, kMostOrdered)));
+    visit_leaves<kMode>(s, world, leaves, own);
+    if (!own.none()) own.make<kMode>(s, world);
+    // Few rays cannot share much.
+    const uint32_t least = min_of(kLeastShared, s.count / 4);
+    return of_rays + kOwnVisit * own.all() >= least * (visits + kOwnVisit * own.all());
 }
