@@ -41,6 +41,7 @@ struct Built {
     World world() const {
         World w;
         w.upper = upper.view();
+        w.only_instances = std::find(on_upper_level.begin(), on_upper_level.end(), true) == on_upper_level.end();
         w.parts = parts.data(), w.part_count = static_cast<uint32_t>(parts.size());
         w.far = far.view(), w.near = near;
         w.instances = instances.data(), w.levels = views.data(), w.shapes = shapes.data();

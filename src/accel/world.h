@@ -22,8 +22,8 @@ constexpr uint32_t part_place(uint32_t node, uint32_t child) { return node * kWi
 
 /// A hierarchy: the root is nodes[0], nodes is nullptr when there is nothing in it.
 struct LevelView {
-    const void* nodes = nullptr;      ///< what they are depends on the layout: kernels/layout_*.inl
-    const void* blocks = &kNoBlocks;  ///< the same; that where there are no triangles
+    const void* nodes = nullptr;         ///< what they are depends on the layout: kernels/layout_*.inl
+    const void* blocks = &kNoBlocks;     ///< the same; that where there are no triangles
     const LeafEntry* entries = nullptr;  ///< nullptr where there are none
 };
 
@@ -43,6 +43,7 @@ struct TrianglePart {
 /// transformed instances; each of these leads to the hierarchy of its geometry.
 struct World {
     LevelView upper;
+    bool only_instances = false;          ///< there is nothing else on it
     const TrianglePart* parts = nullptr;  ///< ascending
     uint32_t part_count = 0;
     /// Where instances are opened (open.h): a second upper level with all of them as wholes, for rays that are not

@@ -161,6 +161,43 @@ TEST(Deepest, StacksHoldBothLevels) {
         }
 }
 
+/// A ray that is alone in its stream meets far more references to an instance than it may begin with, when it visits
+/// them by itself, and the instance is as deep as there are: both must fit onto its stack.
+TEST(Deepest, StacksHoldWhatRaysOfStreamsBeginWith) {
+    const Affine placing = translation(-3000, 0, 0);
+    const Chain inner(1000);
+    const std::optional<PlacedGeometry> placed = place(1, placing, inner.bounds);
+    ASSERT_TRUE(placed);
+    // Two times 8³ references to the one instance, over four nodes.
+    std::vector<WideNode> nodes(4);
+    for (uint32_t k = 0; k < nodes.size(); ++k)
+        for (uint32_t child = 0; child < kWidth; ++child) {
+            const bool exists = k > 0 || child < 2;
+            for (int axis = 0; axis < 3; ++axis) {
+                nodes[k].plane[axis][0][child] = exists ? placed->world.lo[axis] : kInfinity;
+                nodes[k].plane[axis][1][child] = exists ? placed->world.hi[axis] : -kInfinity;
+            }
+            nodes[k].child[child] =
+                k + 1 < nodes.size() ? ChildRef::node(k + 1) : ChildRef::leaf(ItemKind::instance, 0, 1);
+        }
+    const PlacedGeometry instances[] = {{}, *placed};
+    const ShapesView shapes[2] = {};
+    const LeafEntry entry{1, kWholeInstance, {}};
+    const LevelView levels[] = {{}, inner.view()};
+    World world;
+    world.upper = {nodes.data(), inner.blocks.data(), &entry};
+    world.instances = instances, world.levels = levels, world.shapes = shapes;
+
+    // The first octant's one misses all triangles by little, with all boxes met.
+    std::vector<Ray> rays = {{{-5000, -3.5f, 3.5f}, 0, {1, 1e-7f, 1e-7f}, kInfinity}};
+    for (int i = 0; i < 100; ++i) rays.push_back({{5000, 0, 0}, 0, {-1, 1e-7f, 1e-7f}, kInfinity});
+    for (const Isa isa : supported_isas()) {
+        std::vector<uint8_t> occluded(rays.size());
+        (*select_kernels(isa))->occluded(world, rays.data(), occluded.data(), rays.size());
+        for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], i > 0) << i;
+    }
+}
+
 /// Sheets behind each other, between whose corners rays pass: they meet every box, and nothing. More nodes than may
 /// wait for their memory, in the streams of any hits, lie on their stacks then.
 TEST(Deepest, EverythingIsVisited) {

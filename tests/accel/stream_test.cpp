@@ -3,6 +3,7 @@
 
 #include "accel/geometry.h"
 #include "brute_force.h"
+#include "math/transform.h"
 #include "options.h"
 #include "support/support.h"
 
@@ -17,8 +18,8 @@ TriangleMesh corners() {
     return m;
 }
 
-/// Far more boxes of instances along z than a stack holds, with little in them, and spheres, rectangles and a body of
-/// triangles of the upper level between them.
+/// Far more boxes of instances along z than a ray begins with when it visits them by itself, with little in them, and
+/// spheres, rectangles and a body of triangles of the upper level between them.
 TestScene row_of_boxes(size_t boxes) {
     TestScene scene("row of boxes");
     scene.meshes.push_back(icosphere(2));
@@ -57,15 +58,19 @@ std::vector<Ray> beam(size_t count) {
 }
 
 void expect_right(const TestScene& scene, const std::vector<Ray>& rays, const std::vector<Accel::Occlusion>& expected,
-                  OpenInstances open) {
+                  const AccelOptions& options) {
+    const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
+    ASSERT_TRUE(accel);
+    std::vector<uint8_t> result(rays.size());
+    accel->occluded(rays, result);
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_EQ(result[i], expected[i]) << scene.name << " " << describe(options) << " " << describe(rays[i]);
+}
+void expect_right_always(const TestScene& scene, const std::vector<Ray>& rays,
+                         const std::vector<Accel::Occlusion>& expected, OpenInstances open) {
     for (AccelOptions options : all_options()) {
         options.open = open;
-        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-        ASSERT_TRUE(accel);
-        std::vector<uint8_t> result(rays.size());
-        accel->occluded(rays, result);
-        for (size_t i = 0; i < rays.size(); ++i)
-            ASSERT_EQ(result[i], expected[i]) << scene.name << " " << describe(options) << " " << describe(rays[i]);
+        expect_right(scene, rays, expected, options);
     }
 }
 
@@ -85,13 +90,13 @@ TEST(Streams, MuchThatRaysVisitByThemselves) {
         std::vector<Accel::Occlusion> expected;
         for (const Ray& ray : rays) expected.push_back(brute.occlusion(ray)), ++seen[expected.back()];
         for (const OpenInstances open : {OpenInstances::never, OpenInstances::always})
-            expect_right(scene, rays, expected, open);
+            expect_right_always(scene, rays, expected, open);
     }
     for (const size_t n : seen) EXPECT_GT(n, 20u);
 }
 
-/// What a ray has to visit by itself is more than fits onto its stack at once, and only one of all boxes stops it. The
-/// first stream has few rays, so that there is room for that much of each.
+/// What a ray has to visit by itself is more than it begins with, and only one of all boxes stops it. The first stream
+/// has few rays, so that there is room for that much of each.
 TEST(Streams, OneBoxOfVeryMany) {
     constexpr uint32_t kBoxes = 2000;
     for (uint32_t stopping = 0; stopping < kBoxes; stopping += 133) {
@@ -111,14 +116,55 @@ TEST(Streams, OneBoxOfVeryMany) {
         for (int i = 0; i < 120; ++i)
             rays.push_back(
                 {{0, 0, -1}, 0, {i % 15 == 0 ? 1e-5f : -1e-5f, 1e-6f * static_cast<float>(i), 1}, kInfinity});
-        AccelOptions options;
-        options.open = OpenInstances::never;
-        const Result<Accel> accel = Accel::build(scene.geometries(), scene.instances, options);
-        ASSERT_TRUE(accel);
-        std::vector<uint8_t> result(rays.size());
-        accel->occluded(rays, result);
-        for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(result[i], Accel::blocked) << stopping << " " << i;
+        for (const Isa isa : supported_isas()) {
+            AccelOptions options;
+            options.isa = isa, options.open = OpenInstances::never;
+            expect_right(scene, rays, std::vector<Accel::Occlusion>(rays.size(), Accel::blocked), options);
+        }
     }
+}
+
+/// From so far away that a ray along an axis, exact in the world, is shifted in the space of an instance: it can hit
+/// there although it passes the boxes of all parts, and must take instances as wholes.
+TEST(Streams, FarRaysPastThePartsOfInstances) {
+    size_t blocked = 0;
+    for (uint64_t seed = 0; seed < by_tier<uint64_t>(100, 3000); ++seed) {
+        Random random(seed);
+        TestScene scene("sparse instance");
+        scene.meshes.resize(2);
+        scene.meshes[0].add({-3, -3, -3}, {-2.9f, -3, -3}, {-3, -2.9f, -3});
+        for (int i = 0; i < 40; ++i) {
+            const Vec3 at = random.in_cube(1);
+            const double size = random.decades(-2, -0.5);
+            scene.meshes[1].add(at + random.in_cube(size), at + random.in_cube(size), at + random.in_cube(size));
+        }
+        const Vec3 around = random.direction(), to = random.in_cube(1.5);
+        const double scale = random.uniform(0.3, 1.5);
+        scene.instances = {
+            {0, {}, {}},
+            {1,
+             translation(to.x, to.y, to.z) * rotation_degrees(random.uniform(0, 360), {around.x, around.y, around.z}) *
+                 scaling(scale, scale, scale),
+             {}}};
+        const int axis = static_cast<int>(random.below(3));
+        const auto away = static_cast<float>(random.decades(6.5, 7.2));
+        std::vector<Ray> rays;
+        for (int i = 0; i < 128; ++i) {
+            Ray ray{random.in_cube(2), 0, {}, kInfinity};
+            ray.d[axis] = 1, ray.o[axis] -= away;
+            rays.push_back(ray);
+        }
+        const BruteForce brute(scene);
+        std::vector<Accel::Occlusion> expected;
+        for (const Ray& ray : rays)
+            expected.push_back(brute.occlusion(ray)), blocked += expected.back() == Accel::blocked;
+        for (const Isa isa : supported_isas()) {
+            AccelOptions options;
+            options.isa = isa, options.open = OpenInstances::always;
+            expect_right(scene, rays, expected, options);
+        }
+    }
+    EXPECT_GT(blocked, 100u);
 }
 
 /// First many that share nearly nothing, then many that share nearly everything, and both again.
@@ -140,7 +186,7 @@ TEST(Streams, RaysThatShareLittleOrMuch) {
     const BruteForce brute(scene);
     std::vector<Accel::Occlusion> expected;
     for (const Ray& ray : rays) expected.push_back(brute.occlusion(ray));
-    expect_right(scene, rays, expected, OpenInstances::never);
+    expect_right_always(scene, rays, expected, OpenInstances::never);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ enum class Mode {
 /// Whether one hit is as good as another.
 constexpr bool is_any(Mode mode) { return mode == Mode::any || mode == Mode::opaque; }
 
-/// What a ray takes with it from a packet (packet.inl), at most, before it has to visit it.
+/// What a ray takes with it from a packet (packet.inl) or a stream (stream.inl), at most, before it has to visit it.
 inline constexpr uint32_t kMaxParted = 64;
 /// That, siblings left behind on the way down, in both levels, and what marks the way back up.
 inline constexpr uint32_t kStackSize = kMaxParted + 2 * (kWidth - 1) * kMaxNodeLevels + 2 * kWidth;

@@ -7,14 +7,14 @@
 // have come from memory. After Barringer & Akenine-Möller 2014, "Dynamic Ray Stream Traversal", with bits instead of
 // lists.
 //
-// What rays do not share they visit by themselves afterwards (OwnVisits), in flight (kernel.inl): instances, and
-// everything where they are not near. Rays that share too little even so had better be in flight from the start, and
-// the caller is told.
+// What rays do not share they visit by themselves (OwnVisits), in flight (kernel.inl): instances, and, where instances
+// are opened, everything when they are not near (margin.h). Rays that share too little had better be in flight from the
+// start, and the caller is told.
 
 inline constexpr uint32_t kStream = 64;
 /// With fewer rays at a node on average a stream is slower than rays in flight.
-inline constexpr uint32_t kLeastShared = 4;
-/// What a visit of a ray by itself counts as.
+inline constexpr uint32_t kLeastShared = 3;
+/// As how many nodes that only one ray comes to it counts when a ray visits a run of instances by itself.
 inline constexpr uint32_t kOwnVisit = 8;
 /// Nodes, and leaves, on their way from memory.
 inline constexpr uint32_t kAhead = 8;
@@ -62,6 +62,20 @@ struct StreamEntries {
     }
 };
 
+/// How much rays have shared.
+struct Sharing {
+    uint64_t visits = 0, of_rays = 0;
+
+    void add(uint64_t rays) { ++visits, of_rays += static_cast<uint32_t>(__builtin_popcountll(rays)); }
+    /// What each ray has done by itself.
+    void add_alone(uint64_t times) { visits += times, of_rays += times; }
+    /// Of `count` rays.
+    bool pays(uint32_t count) const {
+        // Few rays cannot share much.
+        return of_rays >= min_of(kLeastShared, count / 4) * visits;
+    }
+};
+
 /// Rays whose directions have the same signs.
 struct Stream {
     StreamRay slab[kStream];  ///< apart from the rest, so that all of them stay in the nearest cache
@@ -73,6 +87,7 @@ struct Stream {
     uint64_t near_plane[3], far_plane[3];
     uint64_t live = 0;  ///< a bit for every ray that is not blocked yet
     uint64_t far = 0;   ///< and for every one that has another upper level as well
+    Sharing sharing;
 
     static uint64_t bit(uint32_t i) { return uint64_t(1) << i; }
 
@@ -83,6 +98,7 @@ struct Stream {
             far_plane[axis] = near_plane[axis] ^ kPlaneBytes;
         }
         count = 0, live = far = 0;
+        sharing = {};
     }
     /// False when the ray hits nothing by definition.
     bool add(const World& world, const Ray& in, uint32_t place) {
@@ -167,7 +183,9 @@ template <Mode kMode>
 inline void visit_shapes(Stream& s, const World& world, const StreamEntry& leaf) {
     const LeafEntry* entry = world.upper.entries + ChildRef::first(leaf.ref);
     for (const LeafEntry* end = entry + ChildRef::count(leaf.ref); entry < end; ++entry) {
-        for (uint64_t rest = leaf.rays & s.live; rest; rest &= rest - 1) {
+        const uint64_t rays = leaf.rays & s.live;
+        s.sharing.add_alone(static_cast<uint32_t>(__builtin_popcountll(rays)));
+        for (uint64_t rest = rays; rest; rest &= rest - 1) {
             const auto ray = static_cast<uint32_t>(__builtin_ctzll(rest));
             test_shape<kMode>(s.query[ray], s.ray[ray], world, *entry);
             end_if_blocked(s, ray);
@@ -182,10 +200,11 @@ public:
     template <Mode kMode>
     void add(Stream& s, const World& world, uint64_t rays, uint32_t ref) {
         if (count_ > kMost - kStream) make<kMode>(s, world);
-        for (rays &= s.live; rays; rays &= rays - 1) {
+        rays &= s.live;
+        s.sharing.add_alone(kOwnVisit * static_cast<uint32_t>(__builtin_popcountll(rays)));
+        for (; rays; rays &= rays - 1) {
             ray_[count_] = static_cast<uint8_t>(__builtin_ctzll(rays));
             ref_[count_++] = ref;
-            ++all_;
         }
     }
     /// All that have been added.
@@ -218,7 +237,6 @@ public:
         });
     }
     bool none() const { return count_ == 0; }
-    uint64_t all() const { return all_; }  ///< how many there were, those already made too
 
 private:
     static constexpr uint32_t kMost = 1024;
@@ -234,7 +252,6 @@ private:
     uint32_t ref_[kMost];
     uint8_t ray_[kMost];
     uint32_t count_ = 0;
-    uint64_t all_ = 0;
 };
 
 /// Leaves that wait for their memory.
@@ -297,16 +314,15 @@ private:
     uint32_t first_ = 0, waiting_ = 1;
 };
 
-/// All rays of the stream, to their ends. False when they would have been faster in flight.
+/// All rays of the stream, to their ends.
 template <Mode kMode>
-inline bool trace_stream(Stream& s, const World& world) {
-    uint64_t visits = 0, of_rays = 0;
+inline void trace_stream(Stream& s, const World& world) {
     OwnVisits own;
     if (s.far) own.add<kMode>(s, world, s.far, ChildRef::node(0));
     WaitingNodes nodes(s.live & ~s.far);
     WaitingLeaves leaves;
     for (StreamEntry at; nodes.pop(world, s.live, at);) {
-        ++visits, of_rays += static_cast<uint32_t>(__builtin_popcountll(at.rays));
+        s.sharing.add(at.rays);
         const MetChildren met = test_stream(s, node_at(world.upper, at.ref), at.rays);
         const uint32_t some = (met.rays[0] | met.rays[1]).some(), is_leaf = top_bits(met.ref);
         nodes.push(some & ~is_leaf, met);
@@ -315,7 +331,4 @@ inline bool trace_stream(Stream& s, const World& world) {
     }
     visit_leaves<kMode>(s, world, leaves, own);
     if (!own.none()) own.make<kMode>(s, world);
-    // Few rays cannot share much.
-    const uint32_t least = min_of(kLeastShared, s.count / 4);
-    return of_rays + kOwnVisit * own.all() >= least * (visits + kOwnVisit * own.all());
 }

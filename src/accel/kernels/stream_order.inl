@@ -60,7 +60,7 @@ struct OrderedRays {
 /// An Accel::Occlusion for each of at most kMostOrdered rays.
 template <Mode kMode>
 [[gnu::noinline]] void trace_ordered(const World& world, const Ray* rays, uint8_t* result, uint32_t count) {
-    constexpr uint32_t kFirstInFlight = 4 * kStream, kMoreInFlight = 4;
+    constexpr uint32_t kFirstInFlight = 4 * kStream, kMoreInFlight = 4, kTooFewToTell = 8;
     const StreamOrder order(rays, count);
     Stream s;
     // How many rays go in flight when a stream turns out not to pay, before the next one is tried.
@@ -73,12 +73,13 @@ template <Mode kMode>
             if (!s.add(world, rays[i], i)) result[i] = Accel::clear;
         }
         if (s.count == 0) continue;
-        const bool pays = trace_stream<kMode>(s, world);
+        trace_stream<kMode>(s, world);
         for (uint32_t i = 0; i < s.count; ++i) {
             const bool met_cut_out = kMode == Mode::opaque && s.query[i].after.instance != kNoHit;
             result[s.index[i]] = !(s.live >> i & 1) ? Accel::blocked : met_cut_out ? Accel::cut_out : Accel::clear;
         }
-        if (pays) {
+        if (s.count < kTooFewToTell) continue;
+        if (s.sharing.pays(s.count)) {
             in_flight = kFirstInFlight;
             continue;
         }
@@ -90,11 +91,12 @@ template <Mode kMode>
     }
 }
 
-/// The same for any number of rays. Without triangles on the upper level there would be nothing to share.
+/// The same for any number of rays. Instances are visited by each ray by itself: where there is nothing else, the order
+/// would be for nothing.
 template <Mode kMode>
 inline void trace_any(const World& world, const Ray* rays, uint8_t* result, size_t count) {
     static_assert(is_any(kMode));
-    if (count < kLeastStream || world.upper.blocks == &kNoBlocks)
+    if (count < kLeastStream || world.upper.nodes == nullptr || world.only_instances)
         return trace<kMode>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
     for (size_t done = 0; done < count; done += kMostOrdered)
         trace_ordered<kMode>(world, rays + done, result + done,
