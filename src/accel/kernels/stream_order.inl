@@ -57,6 +57,12 @@ struct OrderedRays {
     const Ray& operator[](size_t i) const { return rays[place[i]]; }
 };
 
+/// trace() for rays that had better not be a stream. Not inlined, so that its flights lie where those of a stream do.
+template <Mode kMode, class Rays, class Sink>
+[[gnu::noinline]] void trace_in_flight(const World& world, Rays rays, size_t count, Sink sink) {
+    trace<kMode>(world, rays, nullptr, count, sink);
+}
+
 /// An Accel::Occlusion for each of at most kMostOrdered rays.
 template <Mode kMode>
 [[gnu::noinline]] void trace_ordered(const World& world, const Ray* rays, uint8_t* result, uint32_t count) {
@@ -83,11 +89,11 @@ template <Mode kMode>
             in_flight = kFirstInFlight;
             continue;
         }
-        const OrderedRays some{rays, order.place + next};
-        const uint32_t so_many = min_of(in_flight, count - next);
-        trace<kMode>(world, some, nullptr, so_many,
-                     [&](size_t i, const Hit& hit) { result[some.place[i]] = occlusion(hit); });
-        next += so_many, in_flight *= kMoreInFlight;
+        const OrderedRays others{rays, order.place + next};
+        const uint32_t some = min_of(in_flight, count - next);
+        trace_in_flight<kMode>(world, others, some,
+                               [&](size_t i, const Hit& hit) { result[others.place[i]] = occlusion(hit); });
+        next += some, in_flight *= kMoreInFlight;
     }
 }
 
@@ -97,7 +103,8 @@ template <Mode kMode>
 inline void trace_any(const World& world, const Ray* rays, uint8_t* result, size_t count) {
     static_assert(is_any(kMode));
     if (count < kLeastStream || world.upper.nodes == nullptr || world.only_instances)
-        return trace<kMode>(world, rays, nullptr, count, [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
+        return trace_in_flight<kMode>(world, rays, count,
+                                      [&](size_t i, const Hit& hit) { result[i] = occlusion(hit); });
     for (size_t done = 0; done < count; done += kMostOrdered)
         trace_ordered<kMode>(world, rays + done, result + done,
                              static_cast<uint32_t>(min_of<size_t>(count - done, kMostOrdered)));
