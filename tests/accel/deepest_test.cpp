@@ -161,25 +161,34 @@ TEST(Deepest, StacksHoldBothLevels) {
         }
 }
 
-/// A ray that is alone in its stream meets far more references to an instance than it may begin with, when it visits
-/// them by itself, and the instance is as deep as there are: both must fit onto its stack.
+/// A ray of a stream meets far more references to an instance than it may begin with, when it visits them by itself,
+/// and the instance is as deep as there are: both must fit onto its stack, or they end up in the ray beside it.
 TEST(Deepest, StacksHoldWhatRaysOfStreamsBeginWith) {
     const Affine placing = translation(-3000, 0, 0);
     const Chain inner(1000);
     const std::optional<PlacedGeometry> placed = place(1, placing, inner.bounds);
     ASSERT_TRUE(placed);
-    // Two times 8³ references to the one instance, over four nodes.
-    std::vector<WideNode> nodes(4);
-    for (uint32_t k = 0; k < nodes.size(); ++k)
-        for (uint32_t child = 0; child < kWidth; ++child) {
-            const bool exists = k > 0 || child < 2;
-            for (int axis = 0; axis < 3; ++axis) {
-                nodes[k].plane[axis][0][child] = exists ? placed->world.lo[axis] : kInfinity;
-                nodes[k].plane[axis][1][child] = exists ? placed->world.hi[axis] : -kInfinity;
-            }
-            nodes[k].child[child] =
-                k + 1 < nodes.size() ? ChildRef::node(k + 1) : ChildRef::leaf(ItemKind::instance, 0, 1);
+    // Two times 8³ references to the one instance, of which 64 are for both of the rays below, the others for the first
+    // alone.
+    const uint32_t leaf = ChildRef::leaf(ItemKind::instance, 0, 1);
+    const Box both = placed->world;
+    Box one = both;
+    one.hi.y = -1;
+    std::vector<WideNode> nodes(5);
+    const auto set = [&](uint32_t node, uint32_t child, const Box& box, uint32_t ref) {
+        for (int axis = 0; axis < 3; ++axis) {
+            nodes[node].plane[axis][0][child] = box.lo[axis];
+            nodes[node].plane[axis][1][child] = box.hi[axis];
         }
+        nodes[node].child[child] = ref;
+    };
+    for (uint32_t child = 0; child < kWidth; ++child) {
+        set(0, child, child == 0 ? one : child == 1 ? both : Box{}, ChildRef::node(child == 0 ? 2 : 1));
+        set(1, child, child == kSiblings ? both : one, ChildRef::node(3));
+        set(2, child, both, ChildRef::node(3));
+        set(3, child, both, ChildRef::node(4));
+        set(4, child, both, leaf);
+    }
     const PlacedGeometry instances[] = {{}, *placed};
     const ShapesView shapes[2] = {};
     const LeafEntry entry{1, kWholeInstance, {}};
@@ -188,8 +197,9 @@ TEST(Deepest, StacksHoldWhatRaysOfStreamsBeginWith) {
     world.upper = {nodes.data(), inner.blocks.data(), &entry};
     world.instances = instances, world.levels = levels, world.shapes = shapes;
 
-    // The first octant's one misses all triangles by little, with all boxes met.
-    std::vector<Ray> rays = {{{-5000, -3.5f, 3.5f}, 0, {1, 1e-7f, 1e-7f}, kInfinity}};
+    // Of the two of the first octant one misses all triangles by little, with all boxes met.
+    std::vector<Ray> rays = {{{-5000, -3.5f, 3.5f}, 0, {1, 1e-7f, 1e-7f}, kInfinity},
+                             {{-5000, 0, 0}, 0, {1, 1e-7f, 1e-7f}, kInfinity}};
     for (int i = 0; i < 100; ++i) rays.push_back({{5000, 0, 0}, 0, {-1, 1e-7f, 1e-7f}, kInfinity});
     for (const Isa isa : supported_isas()) {
         std::vector<uint8_t> occluded(rays.size());
